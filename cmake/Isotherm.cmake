@@ -101,11 +101,12 @@ endfunction()
 # A program loads the shared libraries that it uses, not those that a static library on its way names.
 add_link_options(-Wl,--as-needed)
 
-# Tests of what has several threads: the thread sanitizer watches these.
+# Tests of what has several threads: the thread sanitizer watches these (tests/lint says which are missing).
 set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clock_link_test concurrency_test
-  edge_pipeline_test edge_source_test endpoints_test frame_counters_test ground_pipeline_test hostile_test link_test
-  live_scan_test nuc_control_test openni_test reconstruction_loop_test recording_loop_test rig_commander_test
-  rig_gate_test service_test spool_test thermal_test tsdf_test)
+  edge_pipeline_test edge_source_test endpoints_test flow_window_test frame_counters_test ground_pipeline_test hostile_test
+  link_test live_scan_test nuc_control_test openni_test process_test reconstruction_loop_test recording_loop_test
+  result_writer_test rig_clock_test rig_commander_test rig_gate_test service_test spool_test thermal_test trust_test
+  tsdf_test usb_stream_test wire_version_test)
 
 # isotherm_test(NAME <name> [NO_UNITY] SRCS <files> [ALONE <some of them>] [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>]
 #   [SHARDS <number>])
@@ -141,7 +142,7 @@ function(isotherm_test)
   target_include_directories(${ARG_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   # Only for sources that use it: the others compile from another clone's cache.
   foreach(source IN LISTS ARG_SRCS)
-    file(STRINGS ${source} uses_source_dir REGEX "ISOTHERM_SOURCE_DIR|dataset_folder.h|bad_input.h" LIMIT_COUNT 1)
+    file(STRINGS ${source} uses_source_dir REGEX "ISOTHERM_SOURCE_DIR|dataset_folder.h|bad_input.h|two_hosts.h" LIMIT_COUNT 1)
     if(uses_source_dir)
       target_compile_definitions(${ARG_NAME} PRIVATE ISOTHERM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
       break()

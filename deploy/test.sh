@@ -62,19 +62,7 @@ status=0
 ctest --preset "$preset" --parallel "$(($(nproc) + 2))" "$@" 2>&1 | tee "$log" |
   sed --unbuffered '/% tests passed/,$d' || status=$?
 details=build/$preset/Testing/Temporary/LastTest.log
-if [ -f "$details" ]; then
-  skipped=$(grep -aE '^\[  SKIPPED \] [A-Za-z0-9_]+\.[A-Za-z0-9_/]+ \(' "$details" | sed 's/ (.*//' | sort -u || true)
-  if [ -n "$skipped" ]; then
-    say "skipped cases (reasons in $details)"
-    echo "$skipped"
-    unlisted=$(echo "$skipped" | sed 's/^\[  SKIPPED \] //' | grep -vxFf <(sed -e '/^#/d' -e "s/^$preset: //" tests/skips.txt) || true)
-    if [ "$strict" = 1 ] && [ -n "$unlisted" ]; then
-      say "skipped, but not in tests/skips.txt"
-      echo "$unlisted"
-      status=1
-    fi
-  fi
-fi
+if [ -f "$details" ] && ! bash tests/skips.sh "$preset" "$log" "$details" && [ "$strict" = 1 ]; then status=1; fi
 say "result"
 sed -n '/% tests passed/,$p' "$log"
 exit "$status"

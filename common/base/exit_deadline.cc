@@ -3,14 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <future>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/pause.h"
 
 namespace isotherm {
 namespace {
@@ -74,10 +73,7 @@ void ExitDeadline::Wait() {
   if (bound_) armed_->end = std::min(armed_->end, *bound_);
   // Assigning stops and joins the thread that waited before.
   thread_ = std::jthread([armed = *armed_](const std::stop_token& disarmed) {
-    std::mutex mutex;
-    std::condition_variable_any never;
-    std::unique_lock lock(mutex);
-    never.wait_until(lock, disarmed, armed.end, [] { return false; });
+    Pause(disarmed, armed.end - Clock::now());
     if (!disarmed.stop_requested())
       Leave(armed.end - armed.begin, armed.status, armed.what, armed.last_words);
   });

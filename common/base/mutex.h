@@ -8,8 +8,7 @@
 namespace isotherm {
 
 /// A std::mutex of which the compiler knows when it is held (GUARDED_BY, REQUIRES). Members are
-/// named as the standard library's waiting functions expect them. A mutex that guards nothing and
-/// only serves to wait may stay a std::mutex.
+/// named as the standard library's waiting functions expect them. Who only waits takes Pause().
 class CAPABILITY("mutex") Mutex {
  public:
   void lock() ACQUIRE() { mutex_.lock(); }

@@ -7,20 +7,16 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <condition_variable>
+#include <chrono>
 #include <cstdlib>
-#include <mutex>
 #include <string>
+
+#include "common/base/pause.h"
 
 namespace isotherm {
 namespace {
 
-void WaitForStop(const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any changed;
-  std::unique_lock lock(mutex);
-  changed.wait(lock, stop, [] { return false; });
-}
+void WaitForStop(const std::stop_token& stop) { Pause(stop, std::chrono::hours(1)); }
 
 TEST(StopSignalTest, F38SigtermBecomesAStopRequestAndASecondOneIsHarmless) {
   StopSignal signal;

@@ -30,11 +30,12 @@ int OpenAgain(int descriptor) {
   return open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 }
 
-UnblockedOutput& StandardError() {
+template <int kDescriptor>
+UnblockedOutput& Standard() {
   // Never destroyed: threads may log until the very end.
   static UnblockedOutput* const output = [] {
-    static_cast<void>(std::atexit([] { StandardError().Flush(kPatienceAtExit_ms); }));
-    return new UnblockedOutput(STDERR_FILENO);
+    static_cast<void>(std::atexit([] { Standard<kDescriptor>().Flush(kPatienceAtExit_ms); }));
+    return new UnblockedOutput(kDescriptor);
   }();
   return *output;
 }
@@ -123,8 +124,10 @@ void UnblockedOutput::Flush(int patience_ms) {
   }
 }
 
-void WriteStandardError(std::string_view text) { StandardError().Write(text); }
+void WriteStandardError(std::string_view text) { Standard<STDERR_FILENO>().Write(text); }
 
-std::uint64_t TakeLeftOutOfStandardError() { return StandardError().TakeLeftOut(); }
+std::uint64_t TakeLeftOutOfStandardError() { return Standard<STDERR_FILENO>().TakeLeftOut(); }
+
+void WriteStandardOutput(std::string_view text) { Standard<STDOUT_FILENO>().Write(text); }
 
 }  // namespace isotherm

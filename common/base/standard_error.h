@@ -57,5 +57,8 @@ class UnblockedOutput {
 void WriteStandardError(std::string_view text);
 /// UnblockedOutput::TakeLeftOut of it.
 std::uint64_t TakeLeftOutOfStandardError();
+/// The same as WriteStandardError for standard output, for programs that must not wait for whoever
+/// reads what they say. Not together with stdio. Thread-safe.
+void WriteStandardOutput(std::string_view text);
 
 }  // namespace isotherm

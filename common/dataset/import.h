@@ -9,6 +9,7 @@
 #include "common/base/status.h"
 #include "common/dataset/dataset.h"
 #include "common/doubts/doubts.h"
+#include "common/doubts/repeat_detector.h"
 #include "common/frame/frame.h"
 #include "common/recording/recording.h"
 
@@ -60,7 +61,8 @@ class NucMarker {
   std::vector<NucInterval> intervals_;
   std::size_t next_ = 0;  ///< First interval that has not ended.
   std::optional<CaptureTime> last_end_;
-  std::optional<Image<std::uint16_t>> frozen_;  ///< Image of the last frame, if that was marked.
+  RepeatDetector repeats_;
+  bool was_marked_ = false;  ///< The frame before.
 };
 
 }  // namespace isotherm

@@ -7,16 +7,15 @@ void NucMarker::Mark(ThermalFrame& frame) {
   for (; next_ < intervals_.size() && intervals_[next_].end < now; ++next_)
     last_end_ = intervals_[next_].end;
   const bool inside = next_ < intervals_.size() && intervals_[next_].start <= now;
-  const bool repeated = !inside && frozen_ && *frozen_ == frame.temperature_raw;
-  if (inside || repeated) {
+  const bool is_repeat = repeats_.Add(frame.temperature_raw) > 0;
+  was_marked_ = inside || (was_marked_ && is_repeat);
+  if (was_marked_) {
     frame.nuc_state = NucState::kInProgress;
     frame.nuc_source = inside ? NucSource::kInBand : NucSource::kInferred;
     frame.seconds_since_nuc.reset();
     frame.valid = false;
-    frozen_ = frame.temperature_raw;
     return;
   }
-  frozen_.reset();
   frame.nuc_state = NucState::kIdle;
   frame.nuc_source = NucSource::kInBand;
   if (last_end_) frame.seconds_since_nuc = ToSeconds(now - *last_end_);

@@ -11,6 +11,14 @@
 
 namespace isotherm {
 
+/// Returns whether an image that came again `repeats` times in a row is frozen and no longer shows
+/// the scene (failure F05), for a camera that sends each image `native_repeats` times (1 = once).
+constexpr bool IsFrozen(int repeats, int native_repeats) {
+  constexpr int kPerNative =
+      3;  // A camera or driver that is late sends an image once or twice more.
+  return repeats >= kPerNative * native_repeats;
+}
+
 /// Tells whether an image is bit for bit the one before it. No detector is free of noise, so such
 /// an image says nothing new: the camera or its driver has sent the last one again. What follows
 /// from that (leave it out, call the camera frozen) is for the caller. Images are compared by a

@@ -3,10 +3,9 @@
 #include <cstdint>
 
 #include "common/base/status.h"
+#include "common/base/units.h"
 
 namespace isotherm {
-
-inline constexpr double kCelsiusZero_k = 273.15;
 
 /// Says what the pixels of thermal images mean, as apparent temperature: kelvin = kelvin_per_count
 /// x count + offset_kelvin. Count 0 is "no value", whatever the scale. Nothing else turns counts

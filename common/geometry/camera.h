@@ -30,6 +30,19 @@ struct CameraModel {
   CameraModel Downscaled(int levels) const;
 };
 
+/// A camera without its lens distortion in single precision, as kernels take it.
+struct CameraF {
+  float fx, fy, cx, cy;
+  int width, height;
+  explicit CameraF(const CameraModel& c)
+      : fx(static_cast<float>(c.fx)),
+        fy(static_cast<float>(c.fy)),
+        cx(static_cast<float>(c.cx)),
+        cy(static_cast<float>(c.cy)),
+        width(c.width),
+        height(c.height) {}
+};
+
 /// Checks sizes (1..16384), finite and positive focal lengths, a principal point inside the image,
 /// and finite distortion. `name` is the camera's field in the rig file, for the message.
 Status Validate(const CameraModel& intrinsics, std::string_view name);

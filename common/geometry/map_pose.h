@@ -24,6 +24,13 @@ struct WorldPose {
 /// other. `T_world_map` is where the pose's sub-map is.
 WorldPose ToWorld(const MapPose& pose, const RigidTransform& T_world_map);
 
+/// Names a pose in `world` as one in the first sub-map: the coordinates of the two are the same.
+/// After GroundPipeline::Finish the whole model is in the first sub-map, and its surface, too, is
+/// in `world`.
+inline const RigidTransform& InFirstMap(const RigidTransform& T_world_camera) {
+  return T_world_camera;
+}
+
 /// A pose of the depth camera on the time line, in the coordinates of the sub-map that it was
 /// tracked against.
 struct StampedMapPose {

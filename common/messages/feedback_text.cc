@@ -28,6 +28,13 @@ void AppendRotation(double deg, const char* positive, const char* negative, std:
   Append(fmt::format("turn {:.0f} deg {}", std::abs(deg), deg > 0.0 ? positive : negative), text);
 }
 
+/// Returns the advice without its reason; empty if there is none.
+std::string AdviceWords(const Feedback& feedback) {
+  std::string text;
+  for (const Advice advice : feedback.advice) Append(std::string(ToString(advice)), text);
+  return text;
+}
+
 }  // namespace
 
 std::string MoveText(const RigidTransform& T_depth_next) {
@@ -45,15 +52,23 @@ std::string MoveText(const RigidTransform& T_depth_next) {
 }
 
 std::string AdviceText(const Feedback& feedback) {
-  std::string text;
-  for (const Advice advice : feedback.advice) Append(std::string(ToString(advice)), text);
+  const std::string text = AdviceWords(feedback);
   if (text.empty()) return feedback.advice_reason.empty() ? "go on" : feedback.advice_reason;
   return feedback.advice_reason.empty() ? text
                                         : fmt::format("{} ({})", text, feedback.advice_reason);
 }
 
-std::vector<std::string> FeedbackParts(const Feedback& feedback) {
+std::vector<std::string> FeedbackParts(const Feedback& feedback, std::vector<std::string> urgent) {
+  if (feedback.frames_left_out > 0) {
+    urgent.push_back(
+        fmt::format("ground BEHIND {}: reconstruct its scan.mcap again", feedback.frames_left_out));
+  }
   std::vector<std::string> parts = {AdviceText(feedback)};
+  if (const std::string words = AdviceWords(feedback); !urgent.empty() && !words.empty()) {
+    parts = {words};
+    if (!feedback.advice_reason.empty()) urgent.push_back(feedback.advice_reason);
+  }
+  parts.insert(parts.end(), urgent.begin(), urgent.end());
   std::string& tracking = parts.emplace_back(ToString(feedback.tracking_state));
   if (feedback.pose_covariance) {
     const PoseSigma sigma = LargestSigma(*feedback.pose_covariance);

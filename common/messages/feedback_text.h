@@ -18,8 +18,11 @@ std::string MoveText(const RigidTransform& T_depth_next);
 std::string AdviceText(const Feedback& feedback);
 
 /// Returns what the ground says, a part per fact, the most important first: advice, tracking,
-/// coverage of view and model, where to go next. For FitLine(): what does not fit is left out.
-std::vector<std::string> FeedbackParts(const Feedback& feedback);
+/// coverage of view and model, where to go next. What is `urgent`, such as that the ground is
+/// behind, stands behind the advice and before its reason. For FitLine(): what does not fit is left
+/// out.
+std::vector<std::string> FeedbackParts(const Feedback& feedback,
+                                       std::vector<std::string> urgent = {});
 
 /// The same in one line.
 std::string FeedbackText(const Feedback& feedback);

@@ -8,6 +8,7 @@
 namespace isotherm {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 Eigen::Quaterniond Rotation(double deg, const Eigen::Vector3d& axis) {
@@ -39,6 +40,22 @@ TEST(FeedbackTextTest, OneLineHasStateCoverageAdviceAndWay) {
       FeedbackText(feedback),
       "closer (40 % of the surface is farther than 0.60 m), tracked, view 62 % good, all 25 % "
       "of 0.80 m2, next view: 0.30 m right");
+}
+
+TEST(FeedbackTextTest, F48ThatTheGroundIsBehindStandsBeforeTheReasonWithWhatToDo) {
+  Feedback feedback;
+  feedback.tracking_state = TrackingState::kTracked;
+  feedback.advice = {Advice::kMoveCloser};
+  feedback.advice_reason = "40 % of the surface is farther than 0.60 m";
+  feedback.frames_left_out = 764;
+  EXPECT_THAT(
+      FeedbackParts(feedback, {"NO NETWORK"}),
+      ElementsAre("closer", "NO NETWORK", "ground BEHIND 764: reconstruct its scan.mcap again",
+                  "40 % of the surface is farther than 0.60 m", "tracked"));
+  feedback.advice = {};
+  EXPECT_EQ(FeedbackText(feedback),
+            "40 % of the surface is farther than 0.60 m, ground BEHIND 764: reconstruct its "
+            "scan.mcap again, tracked");
 }
 
 TEST(FeedbackTextTest, WithoutAdviceTheOperatorGoesOn) {

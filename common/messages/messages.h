@@ -23,7 +23,7 @@ namespace isotherm {
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
 /// Major: they do not and say so (CheckCompatible()); the topics have other names (qos.cc).
 inline constexpr std::uint16_t kWireMajor = 2;
-inline constexpr std::uint16_t kWireMinor = 4;
+inline constexpr std::uint16_t kWireMinor = 5;
 
 /// Ends each sample (idl/isotherm_frames.idl). Not 0, which is what a missing member reads as.
 inline constexpr std::uint8_t kWireMark = 0xA5;
@@ -346,6 +346,8 @@ struct Feedback {
   /// The next pose as seen from the depth camera now; absent while lost.
   std::optional<RigidTransform> T_depth_next;
   double next_gain_m2 = 0.0;  ///< Surface that the next view would measure well for the first time.
+  /// Thermal frames of this scan that the ground left out to keep up. Its recording has them.
+  std::uint32_t frames_left_out = 0;
 };
 
 }  // namespace isotherm

@@ -5,6 +5,7 @@
 
 #include "common/options/nearest_name.h"
 #include "common/options/override.h"
+#include "common/options/protobuf_log.h"
 #include "common/options/text_proto.h"
 
 namespace isotherm {
@@ -28,11 +29,26 @@ void DeclareLogLevel(CLI::App& app, DaemonArguments& arguments) {
       ->type_name("LEVEL");
 }
 
+std::optional<int> Parse(CLI::App& app, int argc, char** argv, const DaemonArguments& arguments) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  SetLogLevel(arguments.log_level);
+  LimitProtobufLog();
+  return std::nullopt;
+}
+
 Status Apply(const DaemonArguments& arguments, google::protobuf::Message& options) {
   if (arguments.config) ISOTHERM_RETURN_IF_ERROR(LoadTextProto(*arguments.config, options));
   for (const std::string& assignment : arguments.overrides)
     ISOTHERM_RETURN_IF_ERROR(ApplyOverride(assignment, options));
   return OkStatus();
+}
+
+int ConfigurationExitCode(const Status& status) {
+  return status.code() == StatusCode::kNotFound ? ExitCode(status) : kExitConfiguration;
 }
 
 }  // namespace isotherm

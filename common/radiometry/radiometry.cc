@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kZeroCelsius_k = 273.15;
 
 // CODATA 2018 (exact in the SI since 2019).
 constexpr double kPlanck = 6.62607015e-34;
@@ -75,14 +75,14 @@ double InvertExactly(double radiance, double first_guess, const SpectralBand& ba
 }  // namespace
 
 double PlanckBandRadiance(double celsius, const SpectralBand& band) {
-  const double kelvin = celsius + kZeroCelsius_k;
+  const double kelvin = celsius + kCelsiusZero_k;
   const double tails = PlanckTail(ScaledFrequency(band.max_um, kelvin)) -
                        PlanckTail(ScaledFrequency(band.min_um, kelvin));
   return kPrefactor * kelvin * kelvin * kelvin * kelvin * tails;
 }
 
 double PlanckBandRadianceSlope(double celsius, const SpectralBand& band) {
-  return KelvinSlope(celsius + kZeroCelsius_k, band);
+  return KelvinSlope(celsius + kCelsiusZero_k, band);
 }
 
 BandRadiance::BandRadiance(const SpectralBand& band) : band_(band) {

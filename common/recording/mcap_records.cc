@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <type_traits>
 
 namespace isotherm::mcap {
 namespace {
@@ -29,6 +30,7 @@ class RecordWriter {
       out_.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
     }
   }
+  void Put(Opcode opcode) { Put(static_cast<std::uint8_t>(opcode)); }
   void Put(std::string_view text) {
     Put(static_cast<std::uint32_t>(text.size()));
     out_.insert(out_.end(), text.begin(), text.end());
@@ -131,61 +133,108 @@ class FieldReader {
   bool ok_ = true;
 };
 
+/// `T` is `Record`, to be written, or to be read into.
+template <typename T, typename Record>
+concept Like = std::same_as<std::remove_const_t<T>, Record>;
+
+// The fields of each record in the specification's order, for writing and for reading.
+void VisitFields(Like<Header> auto& record, const auto& visit) {
+  visit(record.profile, record.library);
+}
+void VisitFields(Like<Footer> auto& record, const auto& visit) {
+  visit(record.summary_start, record.summary_offset_start, record.summary_crc);
+}
+void VisitFields(Like<Schema> auto& record, const auto& visit) {
+  visit(record.id, record.name, record.encoding, record.data);
+}
+void VisitFields(Like<Channel> auto& record, const auto& visit) {
+  visit(record.id, record.schema_id, record.topic, record.message_encoding, record.metadata);
+}
+/// The data follow.
+void VisitFields(Like<Message> auto& record, const auto& visit) {
+  visit(record.channel_id, record.sequence, record.log_time, record.publish_time);
+}
+/// The records follow.
+void VisitFields(Like<ChunkHeader> auto& record, const auto& visit) {
+  visit(record.start, record.end, record.uncompressed_size, record.uncompressed_crc,
+        record.compression, record.compressed_size);
+}
+/// The entries follow.
+void VisitFields(Like<MessageIndex> auto& record, const auto& visit) { visit(record.channel_id); }
+void VisitFields(Like<ChunkIndex> auto& record, const auto& visit) {
+  visit(record.start, record.end, record.chunk_offset, record.chunk_length,
+        record.message_index_offsets, record.message_index_length, record.compression,
+        record.compressed_size, record.uncompressed_size);
+}
+void VisitFields(Like<Statistics> auto& record, const auto& visit) {
+  visit(record.message_count, record.schema_count, record.channel_count, record.attachment_count,
+        record.metadata_count, record.chunk_count, record.start, record.end,
+        record.channel_message_counts);
+}
+void VisitFields(Like<Metadata> auto& record, const auto& visit) {
+  visit(record.name, record.values);
+}
+void VisitFields(Like<MetadataIndex> auto& record, const auto& visit) {
+  visit(record.offset, record.length, record.name);
+}
+void VisitFields(Like<SummaryOffset> auto& record, const auto& visit) {
+  visit(record.group, record.start, record.length);
+}
+void VisitFields(Like<DataEnd> auto& record, const auto& visit) { visit(record.data_section_crc); }
+
+void PutFields(const auto& record, RecordWriter& writer) {
+  VisitFields(record, [&writer](const auto&... fields) { (writer.Put(fields), ...); });
+}
+void AppendRecord(Opcode opcode, const auto& record, Bytes& out) {
+  RecordWriter writer(opcode, out);
+  PutFields(record, writer);
+}
+
+void GetFields(FieldReader& reader, auto& record) {
+  VisitFields(record, [&reader](auto&... fields) { (reader.Get(fields), ...); });
+}
+bool ParseRecord(std::span<const std::uint8_t> content, auto& record) {
+  FieldReader reader(content);
+  GetFields(reader, record);
+  return reader.ok();
+}
+
 }  // namespace
 
-void Append(const Header& record, Bytes& out) {
-  RecordWriter writer(Opcode::kHeader, out);
-  writer.Put(record.profile);
-  writer.Put(record.library);
+void Append(const Header& record, Bytes& out) { AppendRecord(Opcode::kHeader, record, out); }
+void Append(const Footer& record, Bytes& out) { AppendRecord(Opcode::kFooter, record, out); }
+void Append(const Schema& record, Bytes& out) { AppendRecord(Opcode::kSchema, record, out); }
+void Append(const Channel& record, Bytes& out) { AppendRecord(Opcode::kChannel, record, out); }
+void Append(const ChunkIndex& record, Bytes& out) {
+  AppendRecord(Opcode::kChunkIndex, record, out);
 }
-
-void Append(const Footer& record, Bytes& out) {
-  RecordWriter writer(Opcode::kFooter, out);
-  writer.Put(record.summary_start);
-  writer.Put(record.summary_offset_start);
-  writer.Put(record.summary_crc);
+void Append(const Statistics& record, Bytes& out) {
+  AppendRecord(Opcode::kStatistics, record, out);
 }
-
-void Append(const Schema& record, Bytes& out) {
-  RecordWriter writer(Opcode::kSchema, out);
-  writer.Put(record.id);
-  writer.Put(record.name);
-  writer.Put(record.encoding);
-  writer.Put(record.data);
+void Append(const Metadata& record, Bytes& out) { AppendRecord(Opcode::kMetadata, record, out); }
+void Append(const MetadataIndex& record, Bytes& out) {
+  AppendRecord(Opcode::kMetadataIndex, record, out);
 }
-
-void Append(const Channel& record, Bytes& out) {
-  RecordWriter writer(Opcode::kChannel, out);
-  writer.Put(record.id);
-  writer.Put(record.schema_id);
-  writer.Put(record.topic);
-  writer.Put(record.message_encoding);
-  writer.Put(record.metadata);
+void Append(const SummaryOffset& record, Bytes& out) {
+  AppendRecord(Opcode::kSummaryOffset, record, out);
 }
+void Append(const DataEnd& record, Bytes& out) { AppendRecord(Opcode::kDataEnd, record, out); }
 
 void Append(const Message& record, Bytes& out) {
   RecordWriter writer(Opcode::kMessage, out);
-  writer.Put(record.channel_id);
-  writer.Put(record.sequence);
-  writer.Put(record.log_time);
-  writer.Put(record.publish_time);
+  PutFields(record, writer);
   writer.PutRaw(record.data);
 }
 
 void Append(const ChunkHeader& header, std::span<const std::uint8_t> records, Bytes& out) {
   RecordWriter writer(Opcode::kChunk, out);
-  writer.Put(header.start);
-  writer.Put(header.end);
-  writer.Put(header.uncompressed_size);
-  writer.Put(header.uncompressed_crc);
-  writer.Put(header.compression);
-  writer.Put(header.compressed_size);
+  PutFields(header, writer);
   writer.PutRaw(records);
 }
 
 void Append(const MessageIndex& record, Bytes& out) {
   RecordWriter writer(Opcode::kMessageIndex, out);
-  writer.Put(record.channel_id);
+  PutFields(record, writer);
   const std::size_t begin = writer.BeginArray();
   for (const auto& [time, offset] : record.entries) {
     writer.Put(time);
@@ -194,115 +243,47 @@ void Append(const MessageIndex& record, Bytes& out) {
   writer.EndArray(begin);
 }
 
-void Append(const ChunkIndex& record, Bytes& out) {
-  RecordWriter writer(Opcode::kChunkIndex, out);
-  writer.Put(record.start);
-  writer.Put(record.end);
-  writer.Put(record.chunk_offset);
-  writer.Put(record.chunk_length);
-  writer.Put(record.message_index_offsets);
-  writer.Put(record.message_index_length);
-  writer.Put(record.compression);
-  writer.Put(record.compressed_size);
-  writer.Put(record.uncompressed_size);
-}
-
-void Append(const Statistics& record, Bytes& out) {
-  RecordWriter writer(Opcode::kStatistics, out);
-  writer.Put(record.message_count);
-  writer.Put(record.schema_count);
-  writer.Put(record.channel_count);
-  writer.Put(record.attachment_count);
-  writer.Put(record.metadata_count);
-  writer.Put(record.chunk_count);
-  writer.Put(record.start);
-  writer.Put(record.end);
-  writer.Put(record.channel_message_counts);
-}
-
-void Append(const Metadata& record, Bytes& out) {
-  RecordWriter writer(Opcode::kMetadata, out);
-  writer.Put(record.name);
-  writer.Put(record.values);
-}
-
-void Append(const MetadataIndex& record, Bytes& out) {
-  RecordWriter writer(Opcode::kMetadataIndex, out);
-  writer.Put(record.offset);
-  writer.Put(record.length);
-  writer.Put(record.name);
-}
-
-void Append(const SummaryOffset& record, Bytes& out) {
-  RecordWriter writer(Opcode::kSummaryOffset, out);
-  writer.Put(static_cast<std::uint8_t>(record.group));
-  writer.Put(record.start);
-  writer.Put(record.length);
-}
-
-void Append(const DataEnd& record, Bytes& out) {
-  RecordWriter writer(Opcode::kDataEnd, out);
-  writer.Put(record.data_section_crc);
-}
-
 bool Parse(std::span<const std::uint8_t> content, Header& record) {
-  FieldReader fields(content);
-  fields.Get(record.profile);
-  fields.Get(record.library);
-  return fields.ok();
+  return ParseRecord(content, record);
 }
-
 bool Parse(std::span<const std::uint8_t> content, Footer& record) {
-  FieldReader fields(content);
-  fields.Get(record.summary_start);
-  fields.Get(record.summary_offset_start);
-  fields.Get(record.summary_crc);
-  return fields.ok();
+  return ParseRecord(content, record);
 }
-
 bool Parse(std::span<const std::uint8_t> content, Schema& record) {
-  FieldReader fields(content);
-  fields.Get(record.id);
-  fields.Get(record.name);
-  fields.Get(record.encoding);
-  fields.Get(record.data);
-  return fields.ok();
+  return ParseRecord(content, record);
 }
-
 bool Parse(std::span<const std::uint8_t> content, Channel& record) {
-  FieldReader fields(content);
-  fields.Get(record.id);
-  fields.Get(record.schema_id);
-  fields.Get(record.topic);
-  fields.Get(record.message_encoding);
-  fields.Get(record.metadata);
-  return fields.ok();
+  return ParseRecord(content, record);
+}
+bool Parse(std::span<const std::uint8_t> content, ChunkHeader& record) {
+  return ParseRecord(content, record);
+}
+bool Parse(std::span<const std::uint8_t> content, ChunkIndex& record) {
+  return ParseRecord(content, record);
+}
+bool Parse(std::span<const std::uint8_t> content, Statistics& record) {
+  return ParseRecord(content, record);
+}
+bool Parse(std::span<const std::uint8_t> content, Metadata& record) {
+  return ParseRecord(content, record);
+}
+bool Parse(std::span<const std::uint8_t> content, MetadataIndex& record) {
+  return ParseRecord(content, record);
+}
+bool Parse(std::span<const std::uint8_t> content, DataEnd& record) {
+  return ParseRecord(content, record);
 }
 
 bool Parse(std::span<const std::uint8_t> content, Message& record) {
   FieldReader fields(content);
-  fields.Get(record.channel_id);
-  fields.Get(record.sequence);
-  fields.Get(record.log_time);
-  fields.Get(record.publish_time);
+  GetFields(fields, record);
   record.data = fields.rest();
-  return fields.ok();
-}
-
-bool Parse(std::span<const std::uint8_t> content, ChunkHeader& record) {
-  FieldReader fields(content);
-  fields.Get(record.start);
-  fields.Get(record.end);
-  fields.Get(record.uncompressed_size);
-  fields.Get(record.uncompressed_crc);
-  fields.Get(record.compression);
-  fields.Get(record.compressed_size);
   return fields.ok();
 }
 
 bool Parse(std::span<const std::uint8_t> content, MessageIndex& record) {
   FieldReader fields(content);
-  fields.Get(record.channel_id);
+  GetFields(fields, record);
   FieldReader entries(fields.GetArray());
   constexpr std::size_t kEntryBytes = 16;
   record.entries.reserve(entries.rest().size() / kEntryBytes);
@@ -311,55 +292,6 @@ bool Parse(std::span<const std::uint8_t> content, MessageIndex& record) {
     entries.Get(entry.first);
     entries.Get(entry.second);
   }
-  return fields.ok();
-}
-
-bool Parse(std::span<const std::uint8_t> content, ChunkIndex& record) {
-  FieldReader fields(content);
-  fields.Get(record.start);
-  fields.Get(record.end);
-  fields.Get(record.chunk_offset);
-  fields.Get(record.chunk_length);
-  fields.Get(record.message_index_offsets);
-  fields.Get(record.message_index_length);
-  fields.Get(record.compression);
-  fields.Get(record.compressed_size);
-  fields.Get(record.uncompressed_size);
-  return fields.ok();
-}
-
-bool Parse(std::span<const std::uint8_t> content, Statistics& record) {
-  FieldReader fields(content);
-  fields.Get(record.message_count);
-  fields.Get(record.schema_count);
-  fields.Get(record.channel_count);
-  fields.Get(record.attachment_count);
-  fields.Get(record.metadata_count);
-  fields.Get(record.chunk_count);
-  fields.Get(record.start);
-  fields.Get(record.end);
-  fields.Get(record.channel_message_counts);
-  return fields.ok();
-}
-
-bool Parse(std::span<const std::uint8_t> content, Metadata& record) {
-  FieldReader fields(content);
-  fields.Get(record.name);
-  fields.Get(record.values);
-  return fields.ok();
-}
-
-bool Parse(std::span<const std::uint8_t> content, MetadataIndex& record) {
-  FieldReader fields(content);
-  fields.Get(record.offset);
-  fields.Get(record.length);
-  fields.Get(record.name);
-  return fields.ok();
-}
-
-bool Parse(std::span<const std::uint8_t> content, DataEnd& record) {
-  FieldReader fields(content);
-  fields.Get(record.data_section_crc);
   return fields.ok();
 }
 

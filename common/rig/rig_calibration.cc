@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/base/units.h"
 #include "common/options/text_proto.h"
 #include "common/rig/rig_calibration.pb.h"
 
@@ -12,8 +13,6 @@ namespace {
 
 // Quaternions with fewer digits than a double are fine, anything else is a typing error.
 constexpr double kQuaternionNormTolerance = 1e-3;
-constexpr double kMetresPerMillimetre = 1e-3;
-constexpr double kMetresPerMicrometre = 1e-6;
 
 Status CheckQuaternion(const Transform& t) {
   const double norm =
@@ -102,11 +101,10 @@ ThermalSensorModel FromProto(const ThermalSensorProperties& sensor) {
                            .scene_influence = {sensor.scene_influence().near_fraction(),
                                                sensor.scene_influence().near_sigma_px(),
                                                sensor.scene_influence().total_fraction()}};
-  if (sensor.has_pixel_pitch_um())
-    model.pixel_pitch_m = sensor.pixel_pitch_um() * kMetresPerMicrometre;
+  if (sensor.has_pixel_pitch_um()) model.pixel_pitch_m = sensor.pixel_pitch_um() * kMPerUm;
   if (sensor.has_lens()) {
     const ThermalLens& lens = sensor.lens();
-    model.lens = {lens.focal_length_mm() * kMetresPerMillimetre, lens.f_number(), lens.focus_m()};
+    model.lens = {lens.focal_length_mm() * kMPerMm, lens.f_number(), lens.focus_m()};
   }
   return model;
 }
@@ -115,11 +113,10 @@ ThermalSensorProperties ToProto(const ThermalSensorModel& sensor) {
   ThermalSensorProperties properties;
   properties.set_time_constant_s(sensor.time_constant_s);
   properties.set_row_readout_s(sensor.row_readout_s);
-  if (sensor.pixel_pitch_m)
-    properties.set_pixel_pitch_um(*sensor.pixel_pitch_m / kMetresPerMicrometre);
+  if (sensor.pixel_pitch_m) properties.set_pixel_pitch_um(*sensor.pixel_pitch_m / kMPerUm);
   if (sensor.lens) {
     ThermalLens& lens = *properties.mutable_lens();
-    lens.set_focal_length_mm(sensor.lens->focal_length_m / kMetresPerMillimetre);
+    lens.set_focal_length_mm(sensor.lens->focal_length_m / kMPerMm);
     lens.set_f_number(sensor.lens->f_number);
     lens.set_focus_m(sensor.lens->focus_m);
   }

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <string>
 
+#include "common/base/units.h"
 #include "common/radiometry/radiometry.h"
 #include "common/rig/rig_calibration.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kMetresPerMillimetre = 1e-3;
 
 /// Collects the first violated range.
 class RangeCheck {
@@ -62,7 +61,7 @@ void CheckRays(const SimulatedThermalExpertOptions& expert, RangeCheck& check) {
                 "thermal.expert.rays_per_pixel_side must be 3 or more with time_constant_s: the "
                 "rays are spread over time, too");
   if (lens.focus_m() == 0.0) return;
-  check.Require(lens.focus_m() > 2.0 * kMetresPerMillimetre * lens.focal_length_mm(),
+  check.Require(lens.focus_m() > 2.0 * kMPerMm * lens.focal_length_mm(),
                 "thermal.expert.lens.focus_m must be 0 (sharp everywhere) or more than twice the "
                 "focal length");
   check.Require(expert.rays_per_pixel_side() >= 3,
@@ -126,9 +125,8 @@ void SetClock(double offset_s, double drift_ppm, double delay_s, double jitter_s
 
 Status Validate(const SimulationOptions& as_given) {
   const SimulationOptions options = WithCamerasAsAsked(as_given);
-  constexpr double kHour = 3600.0;
   RangeCheck check;
-  check("duration_s", options.duration_s(), 0.0, kHour);
+  check("duration_s", options.duration_s(), 0.0, kSPerHour);
   const SceneOptions& scene = options.scene();
   check("scene.surround_celsius", scene.surround_celsius(), kMinRadiometric_celsius,
         kMaxRadiometric_celsius);
@@ -138,10 +136,10 @@ Status Validate(const SimulationOptions& as_given) {
   CheckDepth(options.depth(), check);
   CheckThermal(options.thermal(), check);
   const ShutterOptions& shutter = options.shutter();
-  check("shutter.first_s", shutter.first_s(), 0.0, kHour);
-  check("shutter.interval_s", shutter.interval_s(), 0.0, kHour);
-  check("shutter.duration_s", shutter.duration_s(), 0.0, kHour);
-  check("shutter.expert.duration_step_s", shutter.expert().duration_step_s(), 0.0, kHour);
+  check("shutter.first_s", shutter.first_s(), 0.0, kSPerHour);
+  check("shutter.interval_s", shutter.interval_s(), 0.0, kSPerHour);
+  check("shutter.duration_s", shutter.duration_s(), 0.0, kSPerHour);
+  check("shutter.expert.duration_step_s", shutter.expert().duration_step_s(), 0.0, kSPerHour);
   check("shutter.expert.shutter_celsius", shutter.expert().shutter_celsius(),
         kMinRadiometric_celsius, kMaxRadiometric_celsius);
   check("shutter.expert.drift_k", shutter.expert().drift_k(), 0.0, 100.0);
@@ -149,7 +147,7 @@ Status Validate(const SimulationOptions& as_given) {
   const ThermalDriftOptions& drift = options.drift();
   check("drift.housing_celsius", drift.housing_celsius(), -60.0, 120.0);
   check("drift.warm_up_k", drift.warm_up_k(), -100.0, 100.0);
-  check("drift.time_constant_s", drift.time_constant_s(), 0.01, 100.0 * kHour);
+  check("drift.time_constant_s", drift.time_constant_s(), 0.01, 100.0 * kSPerHour);
   check("drift.error_per_kelvin", drift.error_per_kelvin(), -100.0, 100.0);
   CheckClock("depth_clock", options.depth_clock(), check);
   CheckClock("thermal_clock", options.thermal_clock(), check);
@@ -242,7 +240,7 @@ namespace {
 /// The camera model's focal length, in pixels, is the distance of the image behind the lens (2.19).
 void SetLens(const SimulatedLensOptions& lens, Rig& rig) {
   if (lens.focus_m() == 0.0) return;
-  const double focal_length_m = kMetresPerMillimetre * lens.focal_length_mm();
+  const double focal_length_m = kMPerMm * lens.focal_length_mm();
   const double image_m = focal_length_m * lens.focus_m() / (lens.focus_m() - focal_length_m);
   rig.thermal_sensor.pixel_pitch_m = image_m / rig.thermal->fx;
   rig.thermal_sensor.lens = LensModel{focal_length_m, lens.f_number(), lens.focus_m()};

@@ -178,10 +178,9 @@ double PixelAverage::BlurDiameterPx(double z_m) const {
   return focal_length_px_ * aperture_m_ * std::abs(1.0 / z_m - 1.0 / focus_m_);
 }
 
-void PixelAverage::Apply(const Scene& scene, const RayGrid& grid, const BandRadiance& band,
-                         const EmissivityTables& emissivity, const PoseOfRows& T_world_camera,
-                         int strip_rows, const HitImage& hits, Image<float>& radiance,
+void PixelAverage::Apply(const Exposure& exposure, const HitImage& hits, Image<float>& radiance,
                          Scratch& scratch) const {
+  const auto& [scene, grid, band, emissivity, T_world_camera, strip_rows] = exposure;
   const double reach = FindReach(grid, T_world_camera, hits, scratch);
   // The mean of a radiance that bends by b per pixel^2 in both directions is b times this off.
   const double spread = 1.0 / 12.0 + 0.25 * reach * reach;

@@ -49,11 +49,19 @@ class PixelAverage {
   /// may be infinite.
   double BlurDiameterPx(double z_m) const;
 
-  /// Changes `radiance`, which is that of the middles of the pixels, and `hits` what they met. Asks
-  /// for poses once per `strip_rows`, a multiple of RayGrid::kTileHeight.
-  void Apply(const Scene& scene, const RayGrid& grid, const BandRadiance& band,
-             const EmissivityTables& emissivity, const PoseOfRows& T_world_camera, int strip_rows,
-             const HitImage& hits, Image<float>& radiance, Scratch& scratch) const;
+  /// Holds what the rays meet, and where they start.
+  struct Exposure {
+    const Scene& scene;
+    const RayGrid& grid;
+    const BandRadiance& band;
+    const EmissivityTables& emissivity;
+    const PoseOfRows& T_world_camera;
+    int strip_rows;  ///< Poses are asked for once per so many rows, a multiple of kTileHeight.
+  };
+
+  /// Changes `radiance`, which is that of the middles of the pixels; `hits` is what they met.
+  void Apply(const Exposure& exposure, const HitImage& hits, Image<float>& radiance,
+             Scratch& scratch) const;
 
  private:
   /// Holds one of the rays whose mean is a pixel: it samples the pixel's area, the lens and the

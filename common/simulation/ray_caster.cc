@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/base/check.h"
-#include "common/simulation/trace_tile.h"
+#include "common/simulation/trace_tile_kernel.h"
 
 namespace isotherm {
 namespace {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
@@ -19,9 +20,8 @@ double EaseIn(double time_s) {
 }  // namespace
 
 double Swing::At(double time_s) const {
-  constexpr double kFullCircle = 2.0 * std::numbers::pi;
-  return center + amplitude * std::sin(kFullCircle * time_s / period_s + phase_rad) +
-         second_amplitude * std::sin(kFullCircle * time_s / second_period_s);
+  return center + amplitude * std::sin(kFullCircle_rad * time_s / period_s + phase_rad) +
+         second_amplitude * std::sin(kFullCircle_rad * time_s / second_period_s);
 }
 
 RigidTransform ScanPath::PoseAt(double time_s) const {

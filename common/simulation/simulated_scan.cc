@@ -8,13 +8,10 @@
 #include "common/base/noise.h"
 #include "common/base/units.h"
 #include "common/simulation/options.h"
-#include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_errors.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kSecondsPerMinute = 60.0;
 
 /// Says what a stream of random numbers is for.
 enum NoisePurpose : std::uint64_t {
@@ -43,7 +40,7 @@ Result<std::unique_ptr<SimulatedScan>> SimulatedScan::Create(const SimulationOpt
 }
 
 SimulatedScan::SimulatedScan(const SimulationOptions& resolved, const Rig& rig, StagedScene staged)
-    : options_(std::make_unique<const SimulationOptions>(resolved)),
+    : options_(resolved),
       rig_(rig),
       staged_(std::move(staged)),
       depth_sensor_(*rig.depth, resolved.depth()),
@@ -59,30 +56,29 @@ void SimulatedScan::ScheduleFrames() {
   const auto schedule = [&](const ClockOptions& clock_options, double rate_hz,
                             CaptureTime first_exposure, NoisePurpose purpose) {
     SimulatedClock clock(clock_options, rate_hz, start_, first_exposure,
-                         NoiseStream(options_->seed(), purpose, 0));
-    const auto frames = static_cast<std::size_t>(std::lround(options_->duration_s() * rate_hz));
+                         NoiseStream(options_.seed(), purpose, 0));
+    const auto frames = static_cast<std::size_t>(std::lround(options_.duration_s() * rate_hz));
     std::vector<SimulatedFrameTime> times;
     for (std::size_t i = 0; i < frames; ++i) times.push_back(clock.Next());
     return times;
   };
   // Both clocks run before anything is rendered, so that frames can be rendered in any order and on
   // any thread.
-  depth_times_ =
-      schedule(options_->depth_clock(), options_->depth().rate_hz(), start_, kDepthClock);
+  depth_times_ = schedule(options_.depth_clock(), options_.depth().rate_hz(), start_, kDepthClock);
   thermal_times_ =
-      schedule(options_->thermal_clock(), options_->thermal().rate_hz(),
-               start_ + FromSeconds(options_->expert().thermal_phase_s()), kThermalClock);
+      schedule(options_.thermal_clock(), options_.thermal().rate_hz(),
+               start_ + FromSeconds(options_.expert().thermal_phase_s()), kThermalClock);
 }
 
 void SimulatedScan::ScheduleShutter() {
-  const ShutterOptions& shutter = options_->shutter();
+  const ShutterOptions& shutter = options_.shutter();
   if (shutter.duration_s() <= 0.0) return;
   // Otherwise it would be closed again before it has opened.
   const double interval_s = std::max(shutter.interval_s(), shutter.duration_s());
   const bool by_drift = shutter.expert().drift_k() > 0.0;
   if (!by_drift && shutter.interval_s() <= 0.0) return;
   double at_s = by_drift ? NextDrift(0.0) : shutter.first_s();
-  while (at_s < options_->duration_s()) {
+  while (at_s < options_.duration_s()) {
     const CaptureTime closed = start_ + FromSeconds(at_s);
     const double duration_s = shutter.duration_s() + shutter.expert().duration_step_s() *
                                                          static_cast<double>(nuc_events_.size());
@@ -95,7 +91,7 @@ void SimulatedScan::ScheduleShutter() {
 }
 
 double SimulatedScan::HousingCelsius(double seconds) const {
-  const ThermalDriftOptions& drift = options_->drift();
+  const ThermalDriftOptions& drift = options_.drift();
   return drift.housing_celsius() +
          drift.warm_up_k() * (1.0 - std::exp(-seconds / drift.time_constant_s()));
 }
@@ -104,8 +100,8 @@ double SimulatedScan::NextDrift(double after_s) const {
   constexpr double kStep_s = 0.005;  // Finer than frames are.
   const double reference = HousingCelsius(after_s);
   double at_s = after_s;
-  while (at_s < options_->duration_s() &&
-         std::abs(HousingCelsius(at_s) - reference) < options_->shutter().expert().drift_k()) {
+  while (at_s < options_.duration_s() &&
+         std::abs(HousingCelsius(at_s) - reference) < options_.shutter().expert().drift_k()) {
     at_s += kStep_s;
   }
   return at_s;
@@ -116,12 +112,12 @@ double SimulatedScan::CorrectedAfter(CaptureTime time) const {
 }
 
 double SimulatedScan::DriftErrorKelvin(CaptureTime time) const {
-  return options_->drift().error_per_kelvin() *
+  return options_.drift().error_per_kelvin() *
          (HousingCelsius(ToSeconds(time - start_)) - HousingCelsius(CorrectedAfter(time)));
 }
 
 double SimulatedScan::DepthStretch(CaptureTime time) const {
-  const SimulatedDepthExpertOptions& depth = options_->depth().expert();
+  const SimulatedDepthExpertOptions& depth = options_.depth().expert();
   const double seconds = ToSeconds(time - start_);
   return 1.0 +
          depth.warm_up_stretch() * (1.0 - std::exp(-seconds / depth.warm_up_time_constant_s()));
@@ -160,7 +156,7 @@ RawFrame SimulatedScan::RenderDepth(std::uint64_t frame_number, Scratch& scratch
   frame.depth_scale = rig_.depth_scale;
   frame.pixels = depth_sensor_.RenderMoving(
       scene(), [&](double seconds) { return PoseAt(time.exposure + FromSeconds(seconds)); },
-      DepthStretch(time.exposure), NoiseStream(options_->seed(), kDepthPixels, frame_number),
+      DepthStretch(time.exposure), NoiseStream(options_.seed(), kDepthPixels, frame_number),
       scratch.depth);
   return frame;
 }
@@ -185,13 +181,13 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
   const auto closed = [&](std::uint64_t number) {
     return IsShutterClosed(thermal_times_[number].exposure);
   };
-  const bool freeze = options_->shutter().expert().appearance() == ShutterOptions::FREEZE;
+  const bool freeze = options_.shutter().expert().appearance() == ShutterOptions::FREEZE;
   // A frozen camera repeats the last image from before the shutter closed, noise included.
   std::uint64_t shown = frame_number;
   while (freeze && shown > 0 && closed(shown)) --shown;
-  const std::uint64_t noise = NoiseStream(options_->seed(), kThermalPixels, shown);
+  const std::uint64_t noise = NoiseStream(options_.seed(), kThermalPixels, shown);
   if (closed(shown)) {
-    return thermal_sensor_.RenderShutter(options_->shutter().expert().shutter_celsius(), noise,
+    return thermal_sensor_.RenderShutter(options_.shutter().expert().shutter_celsius(), noise,
                                          scratch.thermal);
   }
   const CaptureTime time = thermal_times_[shown].exposure;
@@ -209,17 +205,17 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
 }
 
 void SimulatedScan::AddErrors(CaptureTime time, Image<std::uint16_t>& temperature_raw) const {
-  const SimulatedThermalExpertOptions& expert = options_->thermal().expert();
+  const SimulatedThermalExpertOptions& expert = options_.thermal().expert();
   const double corrected_s = CorrectedAfter(time);
   const double since_s = ToSeconds(time - start_) - corrected_s;
   // Each correction takes the pattern out; another one grows.
   const auto epoch = static_cast<std::uint64_t>(std::llround(corrected_s * kMsPerS));
-  AddPattern(expert.pattern_k_per_sqrt_minute() * std::sqrt(since_s / kSecondsPerMinute),
-             NoiseStream(options_->seed(), kThermalPattern, epoch), rig_.thermal_scale,
+  AddPattern(expert.pattern_k_per_sqrt_minute() * std::sqrt(since_s / kSPerMin),
+             NoiseStream(options_.seed(), kThermalPattern, epoch), rig_.thermal_scale,
              temperature_raw);
   const double flicker_k =
       FlickerKelvin(expert.flicker_k(), expert.flicker_memory_s(), ToSeconds(time - start_),
-                    NoiseStream(options_->seed(), kThermalFlicker, 0));
+                    NoiseStream(options_.seed(), kThermalFlicker, 0));
   AddKelvin(DriftErrorKelvin(time) + flicker_k, rig_.thermal_scale, temperature_raw);
 }
 
@@ -230,7 +226,7 @@ ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {
   ThermalHousekeeping housekeeping;
   housekeeping.housing_celsius = static_cast<float>(HousingCelsius(ToSeconds(time - start_)));
   housekeeping.fpa_celsius = housekeeping.housing_celsius + static_cast<float>(kFpaAboveHousing_k);
-  housekeeping.shutter_celsius = static_cast<float>(options_->shutter().expert().shutter_celsius());
+  housekeeping.shutter_celsius = static_cast<float>(options_.shutter().expert().shutter_celsius());
   return housekeeping;
 }
 

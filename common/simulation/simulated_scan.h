@@ -11,11 +11,10 @@
 #include "common/simulation/depth_sensor.h"
 #include "common/simulation/scenes.h"
 #include "common/simulation/simulated_clock.h"
+#include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_sensor.h"
 
 namespace isotherm {
-
-class SimulationOptions;
 
 /// A whole scan: scene, path, rig, clocks and shutter. Knows the true time and pose of every frame
 /// and renders any of them in any order with the same result. Thread-safe (immutable); scratch
@@ -78,7 +77,7 @@ class SimulatedScan {
   void AddErrors(CaptureTime time, Image<std::uint16_t>& temperature_raw) const;
   ThermalHousekeeping HousekeepingAt(CaptureTime time) const;
 
-  const std::unique_ptr<const SimulationOptions> options_;
+  const SimulationOptions options_;
   const Rig rig_;
   const StagedScene staged_;
   const DepthSensor depth_sensor_;

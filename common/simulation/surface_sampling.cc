@@ -7,18 +7,16 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/simulation/ray_caster.h"
 
 namespace isotherm {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kFullCircle = 2.0 * std::numbers::pi;
 
 /// Points of one primitive in its own coordinates.
 class LocalSampler {
@@ -89,13 +87,13 @@ class LocalSampler {
   }
 
   void Sphere(double radius) {
-    const int rings = Count(kFullCircle / 2.0 * radius);
+    const int rings = Count(kFullCircle_rad / 2.0 * radius);
     for (int ring = 0; ring < rings; ++ring) {
-      const double polar = kFullCircle / 2.0 * (ring + 0.5) / rings;
+      const double polar = kFullCircle_rad / 2.0 * (ring + 0.5) / rings;
       // Fewer points on smaller rings, so that each stands for the same area.
-      const int count = Count(kFullCircle * radius * std::sin(polar));
+      const int count = Count(kFullCircle_rad * radius * std::sin(polar));
       for (int i = 0; i < count; ++i) {
-        const double angle = kFullCircle * i / count;
+        const double angle = kFullCircle_rad * i / count;
         const Vector3d normal(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
                               std::cos(polar));
         samples_.push_back({radius * normal, normal});
@@ -104,11 +102,12 @@ class LocalSampler {
   }
 
   void Side(double radius, double half_length, double sign) {
-    const int count_around = Count(kFullCircle * radius), count_along = Count(2.0 * half_length);
+    const int count_around = Count(kFullCircle_rad * radius),
+              count_along = Count(2.0 * half_length);
     for (int along = 0; along < count_along; ++along) {
       const double z = half_length * ((2.0 * along + 1.0) / count_along - 1.0);
       for (int i = 0; i < count_around; ++i) {
-        const double angle = kFullCircle * i / count_around;
+        const double angle = kFullCircle_rad * i / count_around;
         const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
         samples_.push_back({radius * outward + Vector3d(0.0, 0.0, z), sign * outward});
       }
@@ -119,9 +118,9 @@ class LocalSampler {
     const int rings = Count(outer - inner);
     for (int ring = 0; ring < rings; ++ring) {
       const double radius = inner + (outer - inner) * (ring + 0.5) / rings;
-      const int count = Count(kFullCircle * radius);
+      const int count = Count(kFullCircle_rad * radius);
       for (int i = 0; i < count; ++i) {
-        const double angle = kFullCircle * i / count;
+        const double angle = kFullCircle_rad * i / count;
         samples_.push_back(
             {{radius * std::cos(angle), radius * std::sin(angle), z}, {0.0, 0.0, sign}});
       }

@@ -67,7 +67,7 @@ void ThermalSensor::Expose(const Scene& scene, const PoseAfter& T_world_thermal,
     FillRadiance(view, row, std::min(row + strip_rows, height), scratch);
   }
   if (!average_.IsSingleRay())
-    average_.Apply(scene, grid_, band_, emissivity, pose_of_rows, strip_rows, scratch.hits,
+    average_.Apply({scene, grid_, band_, emissivity, pose_of_rows, strip_rows}, scratch.hits,
                    scratch.radiance, scratch.average);
   Blur(blur_weights_, scratch.radiance, scratch.rows);
 }

@@ -35,6 +35,8 @@ class LineLimiter {
     ++suppressed_;
     return std::nullopt;
   }
+  /// Lines that were left out since the last admitted one, which nobody has been told of.
+  std::uint64_t left_out() const { return left_out_; }
   /// All lines that were left out.
   std::uint64_t suppressed() const { return suppressed_; }
 

@@ -192,6 +192,7 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
   to->has_next_in_depth = from.T_depth_next.has_value();
   if (from.T_depth_next) to->t_depth_next = ToWirePose(*from.T_depth_next);
   to->next_gain_m2 = from.next_gain_m2;
+  to->frames_left_out = from.frames_left_out;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to) {
@@ -213,6 +214,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->advice_reason = ReadText(from.advice_reason);
   to->done = from.done;
   to->next_gain_m2 = from.next_gain_m2;
+  to->frames_left_out = from.frames_left_out;
   return CheckFeedback(*to);
 }
 

@@ -137,14 +137,82 @@ bool Writer<Message>::WaitForAcknowledgments(Nanoseconds timeout) const {
   return dds_wait_for_acks(writer_.value(), timeout.count()) == DDS_RETCODE_OK;
 }
 
+// Names that are only taken back (dds_dispose) never come by the filter below, and the middleware
+// keeps some 0.6 kB of each as long as their writer lives. Beyond so many the reader is made anew,
+// which frees them: 2.5 MB for a topic.
+constexpr int kMaxTakenBack = 4'096;
+
+/// A reader gets this much of the time before it was there.
+enum class Past : std::uint8_t { kKept, kNone };
+
 template <typename Message>
 struct Reader<Message>::Impl {
+  static constexpr TopicId kTopic = TopicOf<Message>::kId;
+
   InstanceLimit limit;  // Outlives the reader, whose threads ask it.
   RefusalCounter* refusals = nullptr;
+  std::int32_t participant = 0;
+  std::int32_t wait_set = 0;  ///< 0: nobody waits.
   DdsHandle topic;
   DdsHandle reader;
   DdsHandle condition;
+  DdsHandle publications;      ///< All that the participant knows of; there while it is flooded.
+  std::uint64_t flooding = 0;  ///< The writer that floods it with names; 0: none.
+  int taken_back = 0;          ///< Names that the reader has state of, and no sample.
   WireSample<Message> sample;  // Reused, so that its payload buffer is allocated once.
+
+  Status OpenReader(Past past) {
+    condition = DdsHandle();
+    reader = DdsHandle();
+    limit.Clear();
+    taken_back = 0;
+    const QosPtr qos = MakeReaderQos(kTopic);
+    if (past == Past::kNone) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+    reader = DdsHandle(dds_create_reader(participant, topic.value(), qos.get(), nullptr));
+    if (reader.value() < 0) return CreationFailed("reader", kTopic, reader.value());
+    condition = DdsHandle(dds_create_readcondition(reader.value(), DDS_ANY_STATE));
+    if (condition.value() < 0) return CreationFailed("read condition", kTopic, condition.value());
+    return wait_set > 0 ? Attach() : OkStatus();
+  }
+  Status Attach() const {
+    const dds_return_t code = dds_waitset_attach(wait_set, condition.value(), 0);
+    if (code == DDS_RETCODE_OK) return OkStatus();
+    return Internal(fmt::format("cannot attach to a DDS wait set: {}", dds_strretcode(code)));
+  }
+
+  /// A name was taken back, or all its writers are gone.
+  void OnWithoutData(const dds_sample_info_t& info) {
+    if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) {
+      limit.Forget(info.instance_handle);
+    } else if (info.instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE &&
+               !limit.Knows(info.instance_handle)) {
+      ++taken_back;
+      if (taken_back == kMaxTakenBack) flooding = info.publication_handle;
+    }
+  }
+  /// While the writer that floods it is there, its past would flood it again, so that it does
+  /// without any: what comes from now on comes, and rigs that start meanwhile may not be seen.
+  void Heal() {
+    if (taken_back >= kMaxTakenBack) {
+      refusals->Add(RefusalCause::kTooManyNames, TopicName(kTopic));
+      publications = DdsHandle(
+          dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
+      static_cast<void>(OpenReader(Past::kNone));
+    } else if (flooding != 0 && !IsThere(flooding)) {
+      flooding = 0;
+      publications = DdsHandle();
+      static_cast<void>(OpenReader(Past::kKept));
+    }
+  }
+  /// Returns whether a writer is known to the participant, matched or not.
+  bool IsThere(std::uint64_t writer) const {
+    void* samples[1] = {nullptr};
+    dds_sample_info_t info{};
+    const dds_return_t count =
+        dds_read_instance(publications.value(), samples, &info, 1, 1, writer);
+    if (count > 0) dds_return_loan(publications.value(), samples, count);
+    return count > 0 && info.instance_state == DDS_ALIVE_INSTANCE_STATE;
+  }
 
   /// Asked by the middleware before it keeps anything of a sample.
   static bool Admit(const dds_sample_info_t* info, void* self) {
@@ -191,16 +259,10 @@ Status Reader<Message>::Open(const Participant& participant, RefusalCounter* ref
   constexpr TopicId kTopic = TopicOf<Message>::kId;
   auto impl = std::make_unique<Impl>();
   impl->refusals = refusals;
+  impl->participant = participant.handle();
   ISOTHERM_RETURN_IF_ERROR(CreateTopic(participant, kTopic, &impl->topic));
   ISOTHERM_RETURN_IF_ERROR(impl->SetFilter());  // Before the reader is there.
-  const QosPtr qos = MakeReaderQos(kTopic);
-  impl->reader =
-      DdsHandle(dds_create_reader(participant.handle(), impl->topic.value(), qos.get(), nullptr));
-  if (impl->reader.value() < 0) return CreationFailed("reader", kTopic, impl->reader.value());
-  impl->condition = DdsHandle(dds_create_readcondition(impl->reader.value(), DDS_ANY_STATE));
-  if (impl->condition.value() < 0) {
-    return CreationFailed("read condition", kTopic, impl->condition.value());
-  }
+  ISOTHERM_RETURN_IF_ERROR(impl->OpenReader(Past::kKept));
   impl_ = std::move(impl);
   return OkStatus();
 }
@@ -214,12 +276,11 @@ int Reader<Message>::Take(const std::function<void(Received<Message>&&)>& handle
     // One at a time: a batch would keep as many large samples alive at once.
     if (dds_take(impl_->reader.value(), samples, &info, 1, 1) <= 0) break;
     ++taken;
-    if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) {
-      impl_->limit.Forget(info.instance_handle);
-    }
-    // Otherwise a writer came or left.
+    if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE || !info.valid_data)
+      impl_->OnWithoutData(info);
     if (info.valid_data) impl_->Accept(handle, info.publication_handle);
   }
+  impl_->Heal();
   return taken;
 }
 
@@ -236,8 +297,9 @@ PeerHandle Reader<Message>::PeerOf(std::uint64_t writer) const {
 }
 
 template <typename Message>
-std::int32_t Reader<Message>::read_condition() const {
-  return impl_->condition.value();
+Status Reader<Message>::AttachTo(std::int32_t wait_set) const {
+  impl_->wait_set = wait_set;
+  return impl_->Attach();
 }
 
 template class Writer<EncodedDepthFrame>;

@@ -71,8 +71,8 @@ class Reader {
   int matched_writers() const;
   /// Whose writer it is; 0 if it is gone.
   PeerHandle PeerOf(std::uint64_t writer) const;
-  /// For WaitSet.
-  std::int32_t read_condition() const;
+  /// For WaitSet, whose handle it takes.
+  Status AttachTo(std::int32_t wait_set) const;
 
  private:
   struct Impl;

@@ -28,6 +28,16 @@ class InstanceLimit {
     writer_of_.emplace(instance, writer);
     return true;
   }
+  /// Returns whether a sample of it was admitted.
+  bool Knows(std::uint64_t instance) {
+    MutexLock lock(mutex_);
+    return writer_of_.contains(instance);
+  }
+  /// The middleware keeps nothing of any: the reader is a new one.
+  void Clear() {
+    MutexLock lock(mutex_);
+    writer_of_.clear();
+  }
   /// The middleware keeps nothing of it any more: all its writers are gone.
   void Forget(std::uint64_t instance) {
     MutexLock lock(mutex_);

@@ -1,11 +1,10 @@
 #include "common/transport/join_domain.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <mutex>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "common/time/back_off.h"
 
 namespace isotherm {
@@ -13,13 +12,6 @@ namespace {
 
 // `waiting` is called this often: callers feed the service manager's watchdog in it.
 constexpr Nanoseconds kReportInterval = std::chrono::milliseconds(250);
-
-void Sleep(const std::stop_token& stop, Nanoseconds duration) {
-  std::mutex mutex;
-  std::condition_variable_any never;
-  std::unique_lock lock(mutex);
-  never.wait_for(lock, stop, duration, [] { return false; });
-}
 
 }  // namespace
 
@@ -39,7 +31,7 @@ Result<std::unique_ptr<Participant>> JoinDomain(const TransportEnvironment& envi
     for (SteadyTime now = clock.SteadyNow(); now < due && !stop.stop_requested();
          now = clock.SteadyNow()) {
       waiting(joined.error());
-      Sleep(stop, std::min<Nanoseconds>(due - now, kReportInterval));
+      Pause(stop, std::min<Nanoseconds>(due - now, kReportInterval));
     }
     if (!stop.stop_requested()) joined = Participant::Create(environment, domain_id);
   }

@@ -287,6 +287,7 @@ TEST_F(MessageRoundTripTest, FeedbackArrivesAsItWasWritten) {
     }
   }
   sent.advice_reason = "0.45 m/s, the model follows up to 0.30 m/s";
+  sent.frames_left_out = 764;
   sent.done = true;
   sent.T_depth_next = MakeTransform({0.1, 0, 0.2}, Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5));
   sent.next_gain_m2 = 0.25;
@@ -308,6 +309,7 @@ TEST_F(MessageRoundTripTest, FeedbackArrivesAsItWasWritten) {
   ASSERT_TRUE(without.has_value());
   EXPECT_FALSE(without->message.pose_covariance.has_value());
   EXPECT_EQ(feedback.advice_reason, sent.advice_reason);
+  EXPECT_EQ(feedback.frames_left_out, sent.frames_left_out);
   EXPECT_TRUE(feedback.done);
   ASSERT_TRUE(feedback.T_depth_next.has_value());
   EXPECT_TRUE(feedback.T_depth_next->isApprox(*sent.T_depth_next, 1e-12));

@@ -4,11 +4,13 @@
 #include <malloc.h>
 
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "common/base/log.h"
 #include "common/base/mutex.h"
-#include "common/time/line_limiter.h"
+#include "common/time/text_limiter.h"
 
 namespace isotherm {
 namespace {
@@ -19,9 +21,6 @@ constexpr int kMmapThresholdBytes = 32 << 20;
 // Freed memory at the heap's end goes back to the kernel only beyond this, so that frames do not
 // fault their pages in again.
 constexpr int kTrimThresholdBytes = 256 << 20;
-
-// The middleware may complain with every packet; what is left out is counted in the next line.
-constexpr int kMaxLogLinesPerSecond = 10;
 
 LogLevel LevelOf(std::uint32_t category) {
   if ((category & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0) return LogLevel::kError;
@@ -42,32 +41,39 @@ struct TransportEnvironment::LogSink {
   void Add(const dds_log_data_t& data) {
     std::string_view text(data.message, data.size);
     while (text.ends_with('\n') || text.ends_with('\0')) text.remove_suffix(1);
+    std::optional<std::string> line;
     {
       MutexLock lock(mutex);
       if (LevelOf(data.priority) == LogLevel::kError) last_error = text;
       if (is_quiet) return;
-      if (std::uint64_t* refused = RefusalIn(text); refused != nullptr && ++*refused > 1) return;
-      if (!limiter.Admit(clock.SteadyNow())) return;
+      CountRefusal(text);
+      line = limiter.Admit(text, clock.SteadyNow());
     }
-    WriteLog(LevelOf(data.priority), "Dds", text);
+    if (line) WriteLog(LevelOf(data.priority), "Dds", *line);
   }
 
-  /// The counter for a message that says that something was refused, otherwise null.
-  std::uint64_t* RefusalIn(std::string_view text) REQUIRES(mutex) {
+  void CountRefusal(std::string_view text) REQUIRES(mutex) {
     const auto says = [text](std::string_view words) {
       return text.find(words) != std::string_view::npos;
     };
-    if (says("dropping oversize")) return &refusals.oversize;
-    if (says("malformed packet") || (says("deserialization") && says("failed"))) {
-      return &refusals.malformed;
+    if (says("dropping oversize")) {
+      ++refusals.oversize;
+    } else if (says("malformed packet") || (says("deserialization") && says("failed"))) {
+      ++refusals.malformed;
     }
-    return nullptr;
+  }
+
+  void TellWhatWasLeftOut() {
+    MutexLock lock(mutex);
+    if (const std::uint64_t lines = limiter.untold(); lines > 0) {
+      LOG(Dds, Info) << lines << " more lines of these kinds until the end";
+    }
   }
 
   const Clock& clock;
   Mutex mutex;
   MiddlewareRefusals refusals GUARDED_BY(mutex);
-  LineLimiter limiter GUARDED_BY(mutex){kMaxLogLinesPerSecond, std::chrono::seconds(1)};
+  TextLimiter limiter GUARDED_BY(mutex);
   std::string last_error GUARDED_BY(mutex);
   bool is_quiet GUARDED_BY(mutex) = false;
 };
@@ -91,7 +97,10 @@ TransportEnvironment::TransportEnvironment(const Clock& clock)
   dds_set_log_sink(&LogSink::Write, sink_.get());
 }
 
-TransportEnvironment::~TransportEnvironment() { dds_set_log_sink(nullptr, nullptr); }
+TransportEnvironment::~TransportEnvironment() {
+  dds_set_log_sink(nullptr, nullptr);
+  sink_->TellWhatWasLeftOut();
+}
 
 std::string TransportEnvironment::last_error() const {
   MutexLock lock(sink_->mutex);

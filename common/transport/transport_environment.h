@@ -21,8 +21,8 @@ struct MiddlewareRefusals {
 ///   - sets CYCLONEDDS_URI to the compiled-in loopback profile if the variable is unset, so that
 ///   nothing leaves
 ///     this computer unless somebody said so (deploy/cyclonedds-lan.xml),
-///   - sends the middleware's messages to our log, at most ten lines per second, and
-///     once per cause for samples that it refuses.
+///   - sends the middleware's messages to our log, of each kind one at once, then one in ten
+///   seconds with the number left out between (TextLimiter).
 /// One per process. Thread-safe.
 class TransportEnvironment {
  public:
@@ -49,7 +49,7 @@ class TransportEnvironment {
   std::string last_error() const;
   /// Messages of the middleware that were left out of the log because there were too many.
   std::uint64_t suppressed_log_lines() const;
-  /// Logged once per cause. Known from the middleware's messages only: a lower bound.
+  /// Known from the middleware's messages only: a lower bound.
   MiddlewareRefusals refused() const;
 
  private:

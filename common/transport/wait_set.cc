@@ -11,11 +11,7 @@ Status WaitSet::Open(const Participant& participant) {
   wait_set_ = DdsHandle(dds_create_waitset(participant.handle()));
   guard_ = DdsHandle(dds_create_guardcondition(participant.handle()));
   if (wait_set_.value() < 0 || guard_.value() < 0) return Internal("cannot create a DDS wait set");
-  return AttachCondition(guard_.value());
-}
-
-Status WaitSet::AttachCondition(std::int32_t condition) {
-  const dds_return_t code = dds_waitset_attach(wait_set_.value(), condition, 0);
+  const dds_return_t code = dds_waitset_attach(wait_set_.value(), guard_.value(), 0);
   if (code == DDS_RETCODE_OK) return OkStatus();
   return Internal(fmt::format("cannot attach to a DDS wait set: {}", dds_strretcode(code)));
 }

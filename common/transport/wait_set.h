@@ -14,10 +14,10 @@ class WaitSet {
   /// To be called once before anything else. `participant` must outlive the wait set.
   Status Open(const Participant& participant);
 
-  /// `reader` must outlive the wait set.
+  /// `reader` must outlive the wait set, and is not attached to another one afterwards.
   template <typename Message>
   Status Attach(const Reader<Message>& reader) {
-    return AttachCondition(reader.read_condition());
+    return reader.AttachTo(wait_set_.value());
   }
   /// Returns when a reader has data, when woken, or after `timeout`, whichever is first.
   void Wait(Nanoseconds timeout);
@@ -25,8 +25,6 @@ class WaitSet {
   void Wake();
 
  private:
-  Status AttachCondition(std::int32_t condition);
-
   DdsHandle guard_;
   DdsHandle wait_set_;
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <optional>
 #include <system_error>
@@ -12,10 +11,6 @@ namespace isotherm {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Class codes of the USB: communication, input, printer, storage, hub, its data, smart card,
-// wireless.
-constexpr std::array kForeignClasses = {0x02, 0x03, 0x07, 0x08, 0x09, 0x0A, 0x0B, 0xE0};
 
 /// The number in a file of one line; nullopt if there is none.
 std::optional<int> ReadNumber(const fs::path& path, int base) {
@@ -39,21 +34,12 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
 }
 
 void AddInterface(const fs::path& interface, UsbNode& node) {
-  const std::optional<int> code = ReadNumber(interface / "bInterfaceClass", 16);
-  if (!code) return;
-  node.interface_classes.push_back(*code);
   for (const fs::path& video : EntriesOf(interface / "video4linux")) {
     node.paths.push_back("/dev/" + video.filename().string());
   }
 }
 
 }  // namespace
-
-bool UsbNode::has_foreign_interface() const {
-  return std::any_of(interface_classes.begin(), interface_classes.end(), [](int code) {
-    return std::find(kForeignClasses.begin(), kForeignClasses.end(), code) != kForeignClasses.end();
-  });
-}
 
 std::vector<UsbNode> ListUsbNodes(const fs::path& devices) {
   std::vector<UsbNode> nodes;

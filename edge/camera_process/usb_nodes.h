@@ -11,12 +11,8 @@ namespace isotherm {
 struct UsbNode {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
-  std::vector<int> interface_classes;  ///< As far as the kernel lists them.
   /// The files to use it by: its own below /dev/bus/usb, and those of the kernel's video driver.
   std::vector<std::string> paths;
-
-  /// It has an interface that no camera has: keyboards, disks, networks, hubs, ...
-  bool has_foreign_interface() const;
 };
 
 /// Returns what is connected. `devices`: the kernel's folder of USB devices.

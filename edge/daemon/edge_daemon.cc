@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -14,6 +15,7 @@
 
 #include "common/base/exit_deadline.h"
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "common/base/processor_time.h"
 #include "common/doubts/doubts.h"
 #include "common/rig/rig_calibration.h"
@@ -28,7 +30,6 @@
 #include "edge/options/edge_options.pb.h"
 #include "edge/pipeline/edge_pipeline.h"
 #include "edge/publisher/late_publisher.h"
-#include "edge/source/pause.h"
 #include "edge/spool/recording_files.h"
 #include "edge/spool/recording_name.h"
 
@@ -163,21 +164,28 @@ struct Leaving {
   std::atomic<int> status_if_stuck{0};
 };
 
-/// Holds what the end of a capture needs.
-struct Ending {
-  ExitDeadline& deadline;
-  const FrameCounters& counters;
-  const CameraHealth& health;
-  bool recording = false;
+/// Holds what a capture works with from its beginning to its end.
+struct CaptureParts {
+  const EdgeOptions& options;
+  const EdgeSession& session;
+  FrameSource& source;
+  FrameCounters& counters;
+  CameraHealth& health;
+  Publisher& publisher;
+  Leaving& leaving;
   const Clock& clock;
-  const SteadyTime start = clock.SteadyNow();
-  const ProcessorTimes processor_before = ReadProcessorTimes();
+  const std::stop_token& stop;
+};
+
+/// Holds what had been used when a capture began.
+struct CaptureBegin {
+  SteadyTime time;
+  ProcessorTimes processor;
 };
 
 /// Returns what the capture has cost, to be asked for while its threads still live.
-std::string ProcessorText(const Ending& ending) {
-  return "processor " + ToText(ReadProcessorTimes() - ending.processor_before,
-                               ToSeconds(ending.clock.SteadyNow() - ending.start));
+std::string ProcessorText(const CaptureBegin& begin, SteadyTime now) {
+  return "processor " + ToText(ReadProcessorTimes() - begin.processor, ToSeconds(now - begin.time));
 }
 
 /// Completes that, once the processes of cameras have ended.
@@ -190,72 +198,72 @@ void PrintProcessorText(const std::string& text) {
   std::fflush(stdout);
 }
 
-void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePipeline& pipeline) {
+void PrintSummary(const CaptureParts& parts, const EdgePipeline& pipeline, bool recording) {
   std::fputs(
-      Summary(ending.counters, ending.recording, publisher.receipt(), pipeline.feedback().latency())
+      Summary(parts.counters, recording, parts.publisher.receipt(), pipeline.feedback().latency())
           .c_str(),
       stdout);
   std::fputs(
-      CameraSummary(ending.health.Get(Sensor::kDepth), ending.health.Get(Sensor::kThermal)).c_str(),
+      CameraSummary(parts.health.Get(Sensor::kDepth), parts.health.Get(Sensor::kThermal)).c_str(),
       stdout);
   std::fflush(stdout);
 }
 
-/// Ends the recording, then the link, each in its time. The process's exit status.
-int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeline,
-          EdgeMonitor& monitor, Publisher& publisher, const Clock& clock,
-          const std::stop_token& stop) {
-  const std::string processor = ProcessorText(ending);
-  const auto say = [&] {
-    PrintSummary(ending, publisher, pipeline);
-    PrintProcessorText(processor);
-  };
+/// Ends the recording, then the link, each in its time; `say` tells what was done. The process's
+/// exit status.
+int Leave(const CaptureParts& parts, EdgePipeline& pipeline, EdgeMonitor& monitor,
+          const std::function<void()>& say) {
+  ExitDeadline& deadline = parts.leaving.deadline;
+  const LinkOptions& link = parts.options.link();
   // With a signal the time already runs.
-  ending.deadline.ArmFirst(stop_limits::kCameras + stop_limits::kDisk, kExitRecording, "a camera",
-                           say);
+  deadline.ArmFirst(stop_limits::kCameras + stop_limits::kDisk, kExitRecording, "a camera", say);
   const bool cameras_ended = pipeline.StopCapture(stop_limits::kCameras);
   if (!cameras_ended) {
     LOG(Edge, Error) << "a camera did not end within " << ToSeconds(stop_limits::kCameras)
                      << " s; leaving without it";
   }
-  ending.deadline.Arm(stop_limits::kDisk, kExitRecording, "the disk", say);
+  deadline.Arm(stop_limits::kDisk, kExitRecording, "the disk", say);
   const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
   const Nanoseconds linger =
-      stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().expert().linger_s());
-  ending.deadline.Arm(stop_limits::kLink + linger, status, "the network", say);
+      parts.stop.stop_requested() ? Nanoseconds(0) : FromSeconds(link.expert().linger_s());
+  deadline.Arm(stop_limits::kLink + linger, status, "the network", say);
   static_cast<void>(pipeline.Stop());
   monitor.PublishEnd();
-  if (!Drain(publisher, options.link(), clock, stop)) {
+  if (!Drain(parts.publisher, link, parts.clock, parts.stop)) {
     LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
   }
-  ending.deadline.Arm(stop_limits::kMiddleware, status,
-                      cameras_ended ? "the middleware or standard output" : "a camera");
+  deadline.Arm(stop_limits::kMiddleware, status,
+               cameras_ended ? "the middleware or standard output" : "a camera");
   say();
   return status;
 }
 
 /// Captures until told to leave, then passes on what is under way. The process's exit status.
-int Capture(const EdgeOptions& options, const EdgeSession& start, FrameSource& source,
-            std::unique_ptr<Spool> spool, FrameCounters& counters, CameraHealth& health,
-            Publisher& publisher, Leaving& leaving, const Clock& clock,
-            const std::stop_token& stop) {
-  if (spool != nullptr) leaving.status_if_stuck = kExitRecording;
-  const Ending ending{leaving.deadline, counters, health, spool != nullptr, clock};
+int Capture(const CaptureParts& parts, std::unique_ptr<Spool> spool) {
+  const auto& [options, session, source, counters, health, publisher, leaving, clock, stop] = parts;
+  const bool recording = spool != nullptr;
+  if (recording) leaving.status_if_stuck = kExitRecording;
+  const CaptureBegin begin{clock.SteadyNow(), ReadProcessorTimes()};
   EdgePipeline pipeline(options, {source, publisher, counters, health, clock, std::move(spool),
-                                  start.session(), start.rig_thermal_delay_s});
+                                  session.session(), session.rig_thermal_delay_s});
   pipeline.StartReceiving();
   NotifyReady(fmt::format("capturing from {}", source.name()));
   LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
-                  << " domain=" << options.link().domain() << " session=" << start.session();
+                  << " domain=" << options.link().domain() << " session=" << session.session();
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
   pipeline.StartCapture();
-  EdgeMonitor monitor(clock, pipeline, publisher, counters, health, options.display().image_file());
-  RigAnnouncer announcer(options, start, health, publisher,
+  EdgeMonitor monitor({clock, pipeline, publisher, counters, health},
+                      options.display().image_file());
+  RigAnnouncer announcer(options, session, health, publisher,
                          [&pipeline](RigUpdate update) { pipeline.RecordRig(std::move(update)); });
   RunUntilStopped(options, pipeline, monitor, announcer, stop);
   NotifyStopping();
-  return Leave(options, ending, pipeline, monitor, publisher, clock, stop);
+  return Leave(parts, pipeline, monitor,
+               [&parts, &pipeline, recording, processor = ProcessorText(begin, clock.SteadyNow())] {
+                 PrintSummary(parts, pipeline, recording);
+                 PrintProcessorText(processor);
+               });
 }
 
 /// A participant and what publishes through it; the first must outlive the second.
@@ -328,8 +336,9 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   }
   const Status begun = link.publisher->BeginSession(DescribeRig(options, start));
   if (!begun.ok()) return Fail(begun);
-  return Capture(options, start, **source, std::move(*spool), counters, health, *link.publisher,
-                 leaving, clock, stop);
+  return Capture(
+      {options, start, **source, counters, health, *link.publisher, leaving, clock, stop},
+      std::move(*spool));
 }
 
 }  // namespace isotherm

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
 #include "common/options/daemon_arguments.h"
-#include "common/options/protobuf_log.h"
 #include "common/options/text_proto.h"
 #include "common/time/clock.h"
 #include "common/transport/transport_environment.h"
@@ -187,24 +187,16 @@ Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
   return OkStatus();
 }
 
-/// A missing file keeps its own exit status; anything else about options is a configuration error.
 int FailConfiguration(const Status& status) {
   LOG(Edge, Error) << status.message();
-  return status.code() == StatusCode::kNotFound ? ExitCode(status) : kExitConfiguration;
+  return ConfigurationExitCode(status);
 }
 
 int Main(int argc, char** argv) {
   CLI::App app;
   CommandLine line;
   Declare(app, line);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    // CLI11 has exit codes of its own; --help and --version are 0.
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  SetLogLevel(line.shared.log_level);
-  LimitProtobufLog();
+  if (const std::optional<int> ended = Parse(app, argc, argv, line.shared)) return *ended;
   // Before any thread or signal handler of the edge exists: the child must be nothing but a camera.
   if (!line.camera_process.empty()) {
     return RunCameraProcess(line.camera_process, line.camera_options, SystemClock());
@@ -218,8 +210,10 @@ int Main(int argc, char** argv) {
   if (const Status applied = ApplyCommandLine(line, options); !applied.ok()) {
     return FailConfiguration(applied);
   }
-  if (const Status valid = Validate(options); !valid.ok()) {
-    return FailConfiguration(Status(valid.code(), "wrong configuration:\n" + valid.message()));
+  if (const std::vector<Status> problems = ValidateAll(options); !problems.empty()) {
+    std::string text = "wrong configuration:";
+    for (const Status& problem : problems) text += "\n" + problem.message();
+    return FailConfiguration(InvalidArgument(text));
   }
   LOG(Edge, Debug) << "effective configuration:\n" << ToTextProto(options);
 

@@ -29,19 +29,18 @@ MonitorHost ThisComputer() {
           .watchdog_interval = WatchdogInterval()};
 }
 
-EdgeMonitor::EdgeMonitor(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-                         const FrameCounters& counters, const CameraHealth& health,
-                         std::filesystem::path image_file, MonitorHost host)
-    : clock_(clock),
-      pipeline_(pipeline),
-      publisher_(publisher),
-      counters_(counters),
-      health_(health),
+EdgeMonitor::EdgeMonitor(const EdgeMonitorParts& parts, std::filesystem::path image_file,
+                         MonitorHost host)
+    : clock_(parts.clock),
+      pipeline_(parts.pipeline),
+      publisher_(parts.publisher),
+      counters_(parts.counters),
+      health_(parts.health),
       image_file_(std::move(image_file)),
       host_(std::move(host)),
       terminal_(line_->is_terminal()),
       synchronised_(host_.read().clock.synchronised),
-      next_status_(clock.SteadyNow()),
+      next_status_(clock_.SteadyNow()),
       next_log_(next_status_ + kLogInterval),
       next_feed_(next_status_),
       newest_depth_{.at = next_status_},
@@ -147,25 +146,28 @@ void EdgeMonitor::ShowFeedback() {
   }
 }
 
-std::string EdgeMonitor::Line() const {
+EdgeSituation EdgeMonitor::Situation() const {
   const PublisherStats link = publisher_.stats();
-  return StatusLine(status_, counters_, link.ground_present, pipeline_.feedback().newest(),
-                    link.ground_problem);
+  EdgeSituation situation{.status = status_,
+                          .depth = counters_.Get(Sensor::kDepth),
+                          .thermal = counters_.Get(Sensor::kThermal),
+                          .ground_present = link.ground_present,
+                          .ground_problem = link.ground_problem,
+                          .feedback = pipeline_.feedback().newest(),
+                          .feedback_age = pipeline_.feedback().age(clock_.Now())};
+  if (const auto recording = pipeline_.recording()) {
+    situation.disk_left_s = recording->left_s;
+    if (!recording->brief.empty()) situation.problems.push_back(recording->brief);
+  }
+  if (!link.problem.empty()) situation.problems.emplace_back("NO NETWORK");
+  if (!link.ground_problem.empty()) situation.problems.push_back("GROUND " + link.ground_problem);
+  if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
+    situation.problems.push_back(*stuck);
+  return situation;
 }
 
 void EdgeMonitor::ShowLine() {
-  if (!terminal_ || !line_) return;
-  std::vector<std::string> problems;
-  if (const auto recording = pipeline_.recording(); recording && !recording->brief.empty())
-    problems.push_back(recording->brief);
-  const PublisherStats link = publisher_.stats();
-  if (!link.problem.empty()) problems.emplace_back("NO NETWORK");
-  if (!link.ground_problem.empty()) problems.push_back("GROUND " + link.ground_problem);
-  if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
-    problems.push_back(*stuck);
-  line_->Show(
-      StatusParts(status_, counters_, link.ground_present, pipeline_.feedback().newest(), problems),
-      "  ");
+  if (terminal_ && line_) line_->Show(StatusParts(Situation()), "  ");
 }
 
 std::vector<std::string> EdgeMonitor::Problems() const {
@@ -201,7 +203,7 @@ void EdgeMonitor::ReportStatus() {
 void EdgeMonitor::Log() {
   if (clock_.SteadyNow() < next_log_) return;
   next_log_ += kLogInterval;
-  const std::string line = Line();
+  const std::string line = StatusLine(Situation());
   if (!terminal_) {
     LOG(Edge, Info) << line;
   }

@@ -33,15 +33,22 @@ struct MonitorHost {
 /// The computer that this program runs on.
 MonitorHost ThisComputer();
 
+/// Holds what the monitor looks at and speaks for.
+struct EdgeMonitorParts {
+  const Clock& clock;
+  EdgePipeline& pipeline;
+  Publisher& publisher;
+  const FrameCounters& counters;
+  const CameraHealth& health;
+};
+
 /// Does what is left to the daemon's main thread beside the line: answers commands, publishes the
 /// status once a second, tells the operator and the service manager. Thread-bound.
 class EdgeMonitor {
  public:
-  /// All but `host` must outlive it. `image_file`: where the confidence image goes (empty:
-  /// nowhere).
-  EdgeMonitor(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-              const FrameCounters& counters, const CameraHealth& health,
-              std::filesystem::path image_file, MonitorHost host = ThisComputer());
+  /// `parts` must outlive it. `image_file`: where the confidence image goes (empty: nowhere).
+  EdgeMonitor(const EdgeMonitorParts& parts, std::filesystem::path image_file,
+              MonitorHost host = ThisComputer());
 
   /// Does what is due; call it often.
   void Tick();
@@ -52,7 +59,7 @@ class EdgeMonitor {
   EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
   /// The newest feedback, if it was not shown yet: image, status line or journal.
   void ShowFeedback();
-  std::string Line() const;
+  EdgeSituation Situation() const;
   void ShowLine();
   /// Returns what is wrong, each in a sentence that says what to do.
   std::vector<std::string> Problems() const;

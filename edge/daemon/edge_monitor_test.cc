@@ -42,7 +42,8 @@ class EdgeMonitorTest : public ::testing::Test {
         .notify_status = [this](std::string_view text) { told_.emplace_back(text); },
         .notify_alive = [this] { ++fed_; },
         .watchdog_interval = watchdog};
-    return monitor_.emplace(clock_, pipeline_, publisher_, counters_, health_, image_, host);
+    return monitor_.emplace(EdgeMonitorParts{clock_, pipeline_, publisher_, counters_, health_},
+                            image_, host);
   }
   /// Time passes, with `frames_per_tick` depth frames.
   void Pass(Nanoseconds time, std::uint64_t frames_per_tick = 0) {

@@ -9,6 +9,7 @@
 
 #include "common/messages/feedback_text.h"
 #include "common/recording/clock_record.h"
+#include "common/recording/disk_time.h"
 
 namespace isotherm {
 namespace {
@@ -52,6 +53,21 @@ std::string Equation(std::string_view done, const SensorCounters& counters, std:
 std::string StateText(const CameraReport& camera) {
   if (camera.state == CameraState::kLost) return " (camera lost)";
   return camera.state == CameraState::kBlind ? " (camera blind)" : "";
+}
+
+std::string GroundText(const EdgeSituation& situation) {
+  if (!situation.ground_present) return "absent";
+  if (!situation.ground_problem.empty()) return situation.ground_problem;
+  return situation.feedback ? FeedbackText(*situation.feedback) : "no feedback yet";
+}
+
+/// Returns how old the advice is, if a hand that follows it has moved on; otherwise nothing.
+std::string OldText(const EdgeSituation& situation) {
+  constexpr Nanoseconds kOld = std::chrono::seconds(1);
+  const bool is_old = situation.ground_present && situation.feedback_age &&
+                      *situation.feedback_age > kOld &&
+                      situation.status.scan_state == ScanState::kScanning;
+  return is_old ? fmt::format("advice {:.1f} s OLD", ToSeconds(*situation.feedback_age)) : "";
 }
 
 std::string ReceiptText(const StreamReceipt& receipt) {
@@ -145,47 +161,52 @@ std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeB
   return metadata;
 }
 
-std::string StatusLine(const EdgeStatus& status, const FrameCounters& counters, bool ground_present,
-                       const std::optional<Feedback>& feedback, const std::string& ground_problem) {
-  const SensorCounters depth = counters.Get(Sensor::kDepth);
-  const SensorCounters thermal = counters.Get(Sensor::kThermal);
-  const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
-  return fmt::format(
-      "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
-      "dropped {}  clock {}{}{}",
-      !ground_present           ? "absent"
-      : !ground_problem.empty() ? ground_problem
-      : feedback                ? FeedbackText(*feedback)
-                                : "no feedback yet",
+std::string StatusLine(const EdgeSituation& situation) {
+  const EdgeStatus& status = situation.status;
+  std::string line = "ground: " + GroundText(situation);
+  if (const std::string old = OldText(situation); !old.empty()) line += ", " + old;
+  line += fmt::format(
+      " | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  dropped {}  "
+      "clock {}",
       status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
-      StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
-      depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ToText(status.clock),
-      stamps.empty() ? "" : "  stamps ", stamps);
+      StateText(status.thermal_camera), NucText(status.nuc),
+      situation.depth.recorded + situation.thermal.recorded,
+      situation.depth.published + situation.thermal.published,
+      Dropped(situation.depth) + Dropped(situation.thermal), ToText(status.clock));
+  const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
+  if (!stamps.empty()) line += "  stamps " + stamps;
+  if (const std::string disk = DiskTimeText(situation.disk_left_s); !disk.empty())
+    line += "  " + disk;
+  return line;
 }
 
-std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameCounters& counters,
-                                     bool ground_present, const std::optional<Feedback>& feedback,
-                                     const std::vector<std::string>& problems) {
-  const SensorCounters depth = counters.Get(Sensor::kDepth);
-  const SensorCounters thermal = counters.Get(Sensor::kThermal);
-  std::vector<std::string> ground = {"ground: absent"};
-  if (ground_present) ground = {"ground: no feedback yet"};
-  if (ground_present && feedback) ground = FeedbackParts(*feedback);
+std::vector<std::string> StatusParts(const EdgeSituation& situation) {
+  const EdgeStatus& status = situation.status;
   // The terminal shows as many parts as fit: first what needs the operator, last what is only nice
   // to know.
-  std::vector<std::string> parts = {ground.front()};
-  parts.insert(parts.end(), problems.begin(), problems.end());
+  std::vector<std::string> urgent = situation.problems;
   for (const auto& [name, camera] :
        {std::pair("depth", status.depth_camera), std::pair("thermal", status.thermal_camera)}) {
-    if (const std::string state = StateText(camera); !state.empty()) parts.push_back(name + state);
+    if (const std::string state = StateText(camera); !state.empty()) urgent.push_back(name + state);
   }
-  const std::uint64_t dropped = Dropped(depth) + Dropped(thermal);
-  if (dropped > 0) parts.push_back(fmt::format("dropped {}", dropped));
-  parts.insert(parts.end(), ground.begin() + 1, ground.end());
+  const std::uint64_t dropped = Dropped(situation.depth) + Dropped(situation.thermal);
+  if (dropped > 0) urgent.push_back(fmt::format("dropped {}", dropped));
+  if (std::string old = OldText(situation); !old.empty()) urgent.push_back(std::move(old));
+  std::vector<std::string> parts;
+  if (situation.ground_present && situation.feedback) {
+    parts = FeedbackParts(*situation.feedback, std::move(urgent));
+  } else {
+    parts = {situation.ground_present ? "ground: no feedback yet" : "ground: absent"};
+    parts.insert(parts.end(), urgent.begin(), urgent.end());
+  }
   parts.push_back(fmt::format("{:.0f}+{:.0f}/s", status.depth.rate_hz, status.thermal.rate_hz));
+  if (std::string disk = DiskTimeText(situation.disk_left_s); !disk.empty())
+    parts.push_back(std::move(disk));
   parts.push_back("NUC " + NucText(status.nuc));
-  parts.push_back(fmt::format("recorded {}", depth.recorded + thermal.recorded));
-  parts.push_back(fmt::format("published {}", depth.published + thermal.published));
+  parts.push_back(
+      fmt::format("recorded {}", situation.depth.recorded + situation.thermal.recorded));
+  parts.push_back(
+      fmt::format("published {}", situation.depth.published + situation.thermal.published));
   parts.push_back("clock " + ToText(status.clock));
   return parts;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,17 +48,27 @@ std::optional<std::string> ClockProblem(const KernelClock& clock);
 /// Returns what the recording says of the clock that stamps its frames, at the start of a scan.
 std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base);
 
+/// Holds what the operator's line is made of.
+struct EdgeSituation {
+  EdgeStatus status;
+  SensorCounters depth;
+  SensorCounters thermal;
+  bool ground_present = false;
+  std::string ground_problem{};             ///< Says why it is not well; empty: it is.
+  std::optional<Feedback> feedback;         ///< The newest.
+  std::optional<Nanoseconds> feedback_age;  ///< nullopt: not known.
+  std::vector<std::string> problems{};      ///< Each says in a few words why this is not well.
+  /// Until the recording ends for lack of space; NaN = not known.
+  double disk_left_s = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// One line for the operator's journal: what the ground says, or what is wrong with it, then rates,
-/// drops, NUC and clock.
-std::string StatusLine(const EdgeStatus& status, const FrameCounters& counters, bool ground_present,
-                       const std::optional<Feedback>& feedback,
-                       const std::string& ground_problem = {});
+/// drops, NUC, clock and disk.
+std::string StatusLine(const EdgeSituation& situation);
 
 /// The same for a terminal that may be narrow (FitLine), the most important first: what the ground
-/// advises, what is wrong (`problems`, each in a few words), frames dropped, then the rest.
-std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameCounters& counters,
-                                     bool ground_present, const std::optional<Feedback>& feedback,
-                                     const std::vector<std::string>& problems);
+/// advises, what is wrong, frames dropped, then why it advises that and the rest.
+std::vector<std::string> StatusParts(const EdgeSituation& situation);
 
 /// Returns what became of every frame, and how soon the ground answered, printed at exit.
 /// `recording`: whether there was one.

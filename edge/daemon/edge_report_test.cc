@@ -4,20 +4,63 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 
+#include "common/base/terminal_line.h"
 #include "edge/frame_counters/frame_counters.h"
 
 namespace isotherm {
 namespace {
 
 using std::chrono::seconds;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 class EdgeReportTest : public testing::Test {
  protected:
   void Count(Sensor sensor, FrameFate fate, std::uint64_t count) {
     counters_.Set(sensor, fate, count);
+  }
+  /// The line of the journal, with the ground there or not and what it says.
+  std::string Line(const EdgeStatus& status, const std::optional<Feedback>& feedback = std::nullopt,
+                   bool ground_present = true, const std::string& ground_problem = {}) const {
+    EdgeSituation situation = Situation(status, feedback);
+    situation.ground_present = ground_present;
+    situation.ground_problem = ground_problem;
+    return StatusLine(situation);
+  }
+  EdgeSituation Situation(const EdgeStatus& status, const std::optional<Feedback>& feedback) const {
+    return {.status = status,
+            .depth = counters_.Get(Sensor::kDepth),
+            .thermal = counters_.Get(Sensor::kThermal),
+            .ground_present = true,
+            .feedback = feedback,
+            .feedback_age = std::nullopt};
+  }
+  /// A scan that goes well, with the advice of the ground.
+  EdgeSituation Scanning() {
+    for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+      Count(sensor, FrameFate::kRecorded, 900);
+      Count(sensor, FrameFate::kPublished, 900);
+    }
+    EdgeStatus status;
+    status.scan_state = ScanState::kScanning;
+    status.depth.rate_hz = 30.0;
+    status.thermal.rate_hz = 40.0;
+    Feedback feedback;
+    feedback.tracking_state = TrackingState::kTracked;
+    feedback.view.good = 0.55F;
+    feedback.model.good = 0.22F;
+    feedback.covered_area_m2 = 0.84;
+    feedback.advice = {Advice::kMoveCloser};
+    feedback.advice_reason = "40 % of the surface is farther than 0.60 m";
+    return Situation(status, feedback);
+  }
+  static std::string Narrow(const EdgeSituation& situation) {
+    constexpr std::size_t kColumns = 79;  // A terminal has 80; a full line would wrap.
+    return FitLine(StatusParts(situation), "  ", kColumns);
   }
   FrameCounters counters_;
 };
@@ -83,12 +126,10 @@ TEST_F(EdgeReportTest, F08TheStatusLineShowsTheDutyCycleOfAStorm) {
   EdgeStatus status;
   status.nuc.state = NucState::kError;
   status.nuc.reason = "shutter closed for 7 s";
-  EXPECT_THAT(StatusLine(status, counters_, true, std::nullopt),
-              HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
+  EXPECT_THAT(Line(status), HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
   status.nuc = {
       .state = NucState::kIdle, .closings_per_minute = 9, .closed_fraction = 0.41, .storm = true};
-  EXPECT_THAT(StatusLine(status, counters_, true, std::nullopt),
-              HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
+  EXPECT_THAT(Line(status), HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
 }
 
 TEST_F(EdgeReportTest, CountersThatDoNotBalanceAreNotHidden) {
@@ -114,22 +155,73 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   feedback.model.good = 0.34F;
   feedback.covered_area_m2 = 0.5;
   feedback.advice = {Advice::kGoBackToRelocalise};
-  EXPECT_THAT(StatusLine({}, counters_, true, feedback),
-              HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
+  EXPECT_THAT(Line({}, feedback), HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
   feedback.tracking_state = TrackingState::kDegraded;
   feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
-  EXPECT_THAT(StatusLine({}, counters_, true, feedback),
-              HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
-  EXPECT_THAT(StatusLine({}, counters_, false, feedback), HasSubstr("ground: absent"));
-  EXPECT_THAT(StatusLine({}, counters_, true, feedback, "refuses this scan"),
+  EXPECT_THAT(Line({}, feedback), HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
+  EXPECT_THAT(Line({}, feedback, false), HasSubstr("ground: absent"));
+  EXPECT_THAT(Line({}, feedback, true, "refuses this scan"),
               HasSubstr("ground: refuses this scan |"));
-  EXPECT_THAT(StatusLine({}, counters_, true, std::nullopt), HasSubstr("no feedback yet"));
+  EXPECT_THAT(Line({}), HasSubstr("no feedback yet"));
+}
+
+TEST_F(EdgeReportTest, On80ColumnsTheAdviceComesFirstAndIsWhole) {
+  EdgeSituation situation = Scanning();
+  EXPECT_EQ(Narrow(situation),
+            "closer (40 % of the surface is farther than 0.60 m)  tracked  view 55 % good");
+  situation.feedback->advice = {Advice::kMoreOblique};
+  situation.feedback->advice_reason =
+      "55 % of the surface is seen at less than 10 deg and reflects you";
+  EXPECT_EQ(Narrow(situation),
+            "more oblique (55 % of the surface is seen at less than 10 deg and reflects you)");
+}
+
+TEST_F(EdgeReportTest, F48On80ColumnsThatTheGroundIsBehindAndWhatToDoAreNotCut) {
+  EdgeSituation situation = Scanning();
+  situation.feedback->frames_left_out = 764;
+  EXPECT_EQ(Narrow(situation),
+            "closer  ground BEHIND 764: reconstruct its scan.mcap again  tracked  30+40/s");
+  EXPECT_THAT(StatusLine(situation),
+              HasSubstr("ground BEHIND 764: reconstruct its scan.mcap again, 40 % of the surface"));
+}
+
+TEST_F(EdgeReportTest, F41On80ColumnsWhatIsWrongHereStandsBehindTheAdvice) {
+  EdgeSituation situation = Scanning();
+  situation.problems = {"NOT RECORDING, disk full"};
+  situation.status.depth_camera.state = CameraState::kLost;
+  Count(Sensor::kDepth, FrameFate::kRecordQueueFull, 7);
+  situation.depth = counters_.Get(Sensor::kDepth);
+  EXPECT_EQ(Narrow(situation),
+            "closer  NOT RECORDING, disk full  depth (camera lost)  dropped 7  tracked");
+  situation.ground_present = false;
+  EXPECT_EQ(Narrow(situation),
+            "ground: absent  NOT RECORDING, disk full  depth (camera lost)  dropped 7");
+}
+
+TEST_F(EdgeReportTest, F28OldAdviceIsSaid) {
+  EdgeSituation situation = Scanning();
+  situation.feedback_age = std::chrono::milliseconds(400);
+  EXPECT_THAT(StatusLine(situation), Not(HasSubstr("OLD")));
+  situation.feedback_age = std::chrono::milliseconds(2322);
+  EXPECT_THAT(Narrow(situation), StartsWith("closer  advice 2.3 s OLD  40 % of the surface"));
+  EXPECT_THAT(StatusLine(situation), HasSubstr(", advice 2.3 s OLD | depth"));
+  situation.status.scan_state = ScanState::kEnded;
+  EXPECT_THAT(StatusLine(situation), Not(HasSubstr("OLD"))) << "nobody waits for any";
+}
+
+TEST_F(EdgeReportTest, F41HowLongTheDiskLastsIsSaidWhileAllIsWell) {
+  EdgeSituation situation = Scanning();
+  EXPECT_THAT(StatusLine(situation), Not(HasSubstr("disk")));
+  situation.disk_left_s = 3.0 * 3600.0;
+  EXPECT_THAT(StatusLine(situation), EndsWith("  disk: 3 h left"));
+  situation.feedback = std::nullopt;
+  EXPECT_EQ(Narrow(situation),
+            "ground: no feedback yet  30+40/s  disk: 3 h left  NUC unknown  recorded 1800");
 }
 
 TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
   EdgeStatus status;
-  EXPECT_THAT(StatusLine(status, counters_, true, std::nullopt),
-              HasSubstr("clock not synchronised"));
+  EXPECT_THAT(Line(status), HasSubstr("clock not synchronised"));
   HostStatus host;
   host.clock = {
       .synchronised = true, .offset_s = 0.0, .estimated_error_s = 0.0001, .max_error_s = 0.0012};
@@ -139,7 +231,7 @@ TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
   status.depth_camera.stamp_sigma_s = 0.00005;
   status.thermal_camera.unsynchronised_frames = 7;
   EXPECT_THAT(
-      StatusLine(status, counters_, true, std::nullopt),
+      Line(status),
       HasSubstr("clock synchronised, off by about 0.10 ms, at most 1.2 ms, set 2 times by "
                 "+3.020 s in all  stamps +-0.050 ms depth, UNSYNCHRONISED frames 0 depth, 7 "
                 "thermal"));

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/options/option_problems.h"
 #include "common/options/text_proto.h"
 #include "edge/camera_process/camera_process.h"
+#include "edge/camera_process/usb_nodes.h"
 #include "edge/daemon/camera_access.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/source/device_description.h"
@@ -77,6 +79,16 @@ std::string ToText(const Result<std::vector<DeviceDescription>>& devices,
 
 }  // namespace
 
+Status Validate(const DepthCameraOptions& options) {
+  OptionProblems problems("source.depth_camera.expert");
+  const DepthCameraExpertOptions& expert = options.expert();
+  problems.CheckRange("width", expert.width(), 16, 4096);
+  problems.CheckRange("height", expert.height(), 16, 4096);
+  problems.CheckRange("rate_hz", expert.rate_hz(), 1, 240);
+  problems.CheckRange("stall_timeout_s", expert.stall_timeout_s(), 0.2, 60.0);
+  return problems.ToStatus();
+}
+
 Result<std::unique_ptr<FrameSource>> MakeCamera(Sensor sensor, const SourceOptions& options,
                                                 const Clock& clock) {
   if (sensor == Sensor::kDepth) return MakeDepthCamera(options, clock);
@@ -115,7 +127,7 @@ int RunCameraProcess(const std::string& sensor_name, const std::string& source_o
     if (camera) {
       const bool is_file = options.depth_camera().uri().ends_with(".oni");
       return ServeCamera(**camera, clock,
-                         {.sandbox = AccessFor(sensor, options),
+                         {.sandbox = AccessFor(sensor, options, ListUsbNodes()),
                           .waits = sensor == Sensor::kDepth && is_file && options.rate() == 0.0});
     }
     status = camera.error();

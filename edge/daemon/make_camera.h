@@ -10,7 +10,10 @@
 
 namespace isotherm {
 
+class DepthCameraOptions;
 class SourceOptions;
+
+Status Validate(const DepthCameraOptions& options);
 
 /// The driver's source for one camera, not supervised, in this process. `clock` must outlive it.
 /// kUnavailable: this program was built without it.

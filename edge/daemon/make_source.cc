@@ -1,9 +1,13 @@
 #include "edge/daemon/make_source.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/options/option_problems.h"
+#include "edge/daemon/camera_access.h"
 #include "edge/daemon/count_losses.h"
 #include "edge/daemon/make_camera.h"
 #include "edge/options/edge_options.pb.h"
@@ -11,6 +15,7 @@
 #include "edge/source/replay_source.h"
 #include "edge/source/supervised_source.h"
 #include "edge/source/synthetic_source.h"
+#include "edge/thermal_camera/camera_registry.h"
 
 namespace isotherm {
 namespace {
@@ -72,6 +77,34 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
 }
 
 }  // namespace
+
+Status Validate(const SourceOptions& options) {
+  OptionProblems problems("source");
+  problems.CheckRange("rate", options.rate(), 0.0, 100.0);
+  problems.CheckRange("loops", options.loops(), 0, 1'000'000);
+  problems.CheckRange("expert.capture_queue_frames", options.expert().capture_queue_frames(), 1,
+                      1000);
+  if (options.kind() == REPLAY && options.recording().empty()) {
+    problems.Add("recording", "is empty; name the file to replay (--recording FILE)");
+  }
+  if (options.kind() == CAMERAS) {
+    problems.Add(Validate(options.depth_camera()));
+    // OpenNI2 plays a file at any rate; beside a real camera it must keep to real time.
+    const bool is_file =
+        options.depth_camera().uri().ends_with(".oni") && !options.thermal_camera().enabled();
+    if (options.rate() != 1.0 && !is_file) {
+      problems.Add("rate", fmt::format("is {}, but cameras have a pace of their own: leave it at 1",
+                                       options.rate()));
+    }
+    if (!options.depth_camera().enabled() && !options.thermal_camera().enabled()) {
+      problems.Add("depth_camera.enabled",
+                   "is false, and thermal_camera.enabled too: no camera is left");
+    }
+  }
+  problems.Add(Validate(options.thermal_camera()));
+  problems.Add(Validate(options.camera_sandbox()));
+  return problems.ToStatus();
+}
 
 Result<std::unique_ptr<FrameSource>> MakeSource(const EdgeOptions& options,
                                                 const SourceContext& context, ToldProblems& told) {

@@ -16,6 +16,9 @@
 namespace isotherm {
 
 class EdgeOptions;
+class SourceOptions;
+
+Status Validate(const SourceOptions& options);
 
 /// Holds what a source is put together with. All must outlive it.
 struct SourceContext {

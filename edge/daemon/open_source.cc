@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "common/base/service.h"
 #include "common/time/back_off.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/source/pause.h"
 
 namespace isotherm {
 namespace {

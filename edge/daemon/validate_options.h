@@ -1,13 +1,20 @@
 #pragma once
 
+#include <vector>
+
 #include "common/base/status.h"
 
 namespace isotherm {
 
 class EdgeOptions;
+class LinkOptions;
+class DisplayOptions;
 
-/// Checks ranges and relations of all stages. The message lists every problem, one per line, as
-/// "stage.field: what is wrong".
-Status Validate(const EdgeOptions& options);
+Status Validate(const LinkOptions& options);
+Status Validate(const DisplayOptions& options);
+
+/// Checks every stage's options; returns all problems, not only the first. A message has a line per
+/// problem: "stage.field: what is wrong".
+std::vector<Status> ValidateAll(const EdgeOptions& options);
 
 }  // namespace isotherm

@@ -10,8 +10,6 @@
 namespace isotherm {
 namespace {
 
-// Failure F05: repeats beyond three times the camera's own.
-constexpr int kRepeatsPerNative = 3;
 // Frames whose least spread the scene is known by: a shutter takes one or two to close.
 constexpr std::size_t kSceneFrames = 8;
 // A scene with less spread cannot be told from a shutter, whose image has noise and some shading.
@@ -39,14 +37,14 @@ double ImageSpread(const Image<std::uint16_t>& temperature_raw, const Radiometri
 }
 
 ImageWatch::ImageWatch(const NucOptions& options)
-    : max_repeats_(kRepeatsPerNative * options.expert().native_repeats()),
+    : native_repeats_(options.expert().native_repeats()),
       uniform_fraction_(options.expert().shutter_like_spread()),
       longest_(FromSeconds(options.expert().max_duration_s())) {}
 
 ImageEvidence ImageWatch::Add(const Image<std::uint16_t>& temperature_raw,
                               const RadiometricScale& scale, CaptureTime time, bool known_closed) {
   ImageEvidence evidence;
-  evidence.is_frozen = repeats_.Add(temperature_raw) >= max_repeats_;
+  evidence.is_frozen = IsFrozen(repeats_.Add(temperature_raw), native_repeats_);
   if (uniform_fraction_ > 0.0 && !evidence.is_frozen) {
     evidence.is_like_shutter =
         IsLikeShutter(ImageSpread(temperature_raw, scale), time, known_closed);

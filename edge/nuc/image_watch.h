@@ -21,7 +21,7 @@ struct ImageEvidence {
 
 /// Looks for the shutter in thermal images, for cameras that do not say when it is closed.
 ///
-/// Frozen: more repeats in a row than three times what the camera shows natively (failure F05).
+/// Frozen: more repeats in a row than the camera may make (IsFrozen).
 /// Like the shutter: the spread of the image's values (their standard deviation) falls below a
 /// fraction of the least spread of the last frames with a scene. A camera that is turned towards a
 /// wall takes longer than that; if the image stays uniform, it is taken for the scene.
@@ -38,7 +38,7 @@ class ImageWatch {
  private:
   bool IsLikeShutter(double spread_k, CaptureTime time, bool known_closed);
 
-  const int max_repeats_;
+  const int native_repeats_;
   const double uniform_fraction_;  ///< 0 = never.
   const Nanoseconds longest_;
   RepeatDetector repeats_;

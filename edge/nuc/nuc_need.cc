@@ -22,7 +22,7 @@ std::string DriftOf(const char* part, float then_celsius, float now_celsius, dou
 NucNeed::NucNeed(const NucOptions& options, bool is_ordered, NucNotices& notices)
     : rules_{.require_first = options.expert().require_initial_nuc(),
              .before_scan = is_ordered && options.before_scan(),
-             .max_housing_drift_k = options.max_housing_drift_k(),
+             .max_housing_drift_k = options.expert().max_housing_drift_k(),
              .max_fpa_drift_k = options.expert().max_fpa_drift_k(),
              .max_interval_s = options.max_interval_s()},
       notices_(notices) {}

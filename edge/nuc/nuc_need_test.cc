@@ -24,7 +24,7 @@ NucObservation At(float housing_celsius, float fpa_celsius) {
 class NucNeedTest : public testing::Test {
  protected:
   NucNeedTest() {
-    options_.set_max_housing_drift_k(0.5);
+    options_.mutable_expert()->set_max_housing_drift_k(0.5);
     options_.mutable_expert()->set_max_fpa_drift_k(1);
     options_.set_max_interval_s(180);
   }
@@ -62,7 +62,7 @@ TEST_F(NucNeedTest, ATemperatureThatTheCameraDoesNotTellIsNoReason) {
 }
 
 TEST_F(NucNeedTest, ALimitOfZeroIsNone) {
-  options_.set_max_housing_drift_k(0);
+  options_.mutable_expert()->set_max_housing_drift_k(0);
   options_.mutable_expert()->set_max_fpa_drift_k(0);
   options_.set_max_interval_s(0);
   EXPECT_EQ(Make().Reason(At(90.0F, 95.0F), std::chrono::hours(9)), "");

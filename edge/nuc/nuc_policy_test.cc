@@ -132,7 +132,7 @@ TEST_F(NucSupervisorTest, F08AShutterThatStaysClosedIsAnErrorOnce) {
 TEST_F(NucSupervisorTest, WarmUpIsWarnedOfOrWaitedFor) {
   for (const auto warm_up : {NucOptions::WARN, NucOptions::WAIT}) {
     options_.set_warm_up(warm_up);
-    options_.set_max_housing_drift_k(0);
+    options_.mutable_expert()->set_max_housing_drift_k(0);
     options_.mutable_expert()->set_warm_up_housing_stable_s(30);
     notices_.clear();
     Start();

@@ -58,11 +58,11 @@ TEST(NucProperties, F07NoFrameFromClosingToTheEndOfSettlingIsValidAndOrdersKeepT
   for (int scan = 0; scan < kScans; ++scan) {
     NucOptions options;
     options.set_before_scan(scan % 2 == 0);
-    options.set_max_housing_drift_k(scan % 3 == 0 ? 0.2 : 0.0);
+    options.mutable_expert()->set_max_housing_drift_k(scan % 3 == 0 ? 0.2 : 0.0);
     options.set_max_interval_s(scan % 5 == 0 ? 12.0 : 0.0);
     NucSupervisor supervisor(options, NucSupervisor::Role::kSupervise);
     WilfulCamera camera(random, scan % 2 == 0);
-    const Nanoseconds settle = FromSeconds(options.settle_time_s());
+    const Nanoseconds settle = FromSeconds(options.expert().settle_time_s());
     const Nanoseconds apart = FromSeconds(options.expert().min_interval_s());
     CaptureTime now{std::chrono::hours(1)};
     CaptureTime last_closed{}, last_order{};

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "common/base/units.h"
+#include "common/options/option_problems.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -25,6 +27,39 @@ NucPolicy PolicyOf(const NucOptions& options) {
 }
 
 }  // namespace
+
+Status Validate(const NucOptions& options) {
+  OptionProblems problems("nuc");
+  problems.CheckRange("expert.settle_time_s", options.expert().settle_time_s(), 0.0, 60.0);
+  problems.CheckRange("expert.max_housing_drift_k", options.expert().max_housing_drift_k(), 0.0,
+                      100.0);
+  problems.CheckRange("expert.max_fpa_drift_k", options.expert().max_fpa_drift_k(), 0.0, 100.0);
+  problems.CheckRange("max_interval_s", options.max_interval_s(), 0.0, 24.0 * kSPerHour);
+  problems.CheckRange("expert.min_interval_s", options.expert().min_interval_s(), 0.5, kSPerHour);
+  problems.CheckRange("expert.max_hold_s", options.expert().max_hold_s(), 0.0, kSPerHour);
+  problems.CheckRange("expert.answer_s", options.expert().answer_s(), 0.1, 60.0);
+  problems.CheckRange("expert.max_attempts", options.expert().max_attempts(), 1, 100);
+  problems.CheckRange("expert.max_duration_s", options.expert().max_duration_s(), 0.1, 600.0);
+  problems.CheckRange("expert.commanded_duration_s", options.expert().commanded_duration_s(), 0.0,
+                      60.0);
+  problems.CheckRange("expert.native_repeats", options.expert().native_repeats(), 1, 100);
+  problems.CheckRange("expert.shutter_like_spread", options.expert().shutter_like_spread(), 0.0,
+                      1.0);
+  problems.CheckRange("expert.max_closings_per_minute", options.expert().max_closings_per_minute(),
+                      1, 600);
+  problems.CheckRange("expert.warm_up_rate_k_per_min", options.expert().warm_up_rate_k_per_min(),
+                      0.001, 100.0);
+  problems.CheckRange("expert.warm_up_stable_s", options.expert().warm_up_stable_s(), 1.0,
+                      kSPerHour);
+  problems.CheckRange("expert.warm_up_housing_rate_k_per_min",
+                      options.expert().warm_up_housing_rate_k_per_min(), 0.001, 100.0);
+  problems.CheckRange("expert.warm_up_housing_stable_s",
+                      options.expert().warm_up_housing_stable_s(), 1.0, kSPerHour);
+  problems.CheckRange("expert.warm_up_time_s", options.expert().warm_up_time_s(), 0.0,
+                      24.0 * kSPerHour);
+  problems.CheckRange("expert.frozen_restart_s", options.expert().frozen_restart_s(), 0.0, 600.0);
+  return problems.ToStatus();
+}
 
 NucSupervisor::NucSupervisor(const NucOptions& options, Role role)
     : role_(role),

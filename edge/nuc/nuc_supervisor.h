@@ -21,6 +21,8 @@ namespace isotherm {
 
 class NucOptions;
 
+Status Validate(const NucOptions& options);
+
 /// Holds what is known about the thermal camera's correction at one frame, and what follows.
 struct NucStatus {
   NucState state = NucState::kUnknown;

@@ -25,7 +25,7 @@ double LongestFrozen_s(const NucOptions& options) {
 }  // namespace
 
 ShutterWatch::ShutterWatch(const NucOptions& options, NucNotices& notices)
-    : limits_{.settle_time = FromSeconds(options.settle_time_s()),
+    : limits_{.settle_time = FromSeconds(options.expert().settle_time_s()),
               .longest = FromSeconds(options.expert().max_duration_s()),
               .longest_frozen = FromSeconds(LongestFrozen_s(options)),
               .commanded = FromSeconds(options.expert().commanded_duration_s()),

@@ -17,7 +17,7 @@ class ShutterWatchTest : public testing::Test {
  protected:
   static NucOptions Options() {
     NucOptions options;
-    options.set_settle_time_s(0.5);
+    options.mutable_expert()->set_settle_time_s(0.5);
     options.mutable_expert()->set_max_duration_s(5);
     options.mutable_expert()->set_frozen_restart_s(2);
     options.mutable_expert()->set_commanded_duration_s(1);

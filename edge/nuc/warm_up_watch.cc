@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/units.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -11,7 +12,6 @@ namespace {
 /// Housekeeping temperatures change by fractions of a kelvin a minute, and cameras send them with
 /// every frame: one a second keeps a window of minutes short. Smaller: more memory, no better rate.
 constexpr Nanoseconds kSampleInterval = std::chrono::seconds(1);
-constexpr double kSecondsPerMinute = 60.0;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void TemperatureRate::Add(CaptureTime time, double celsius) {
   while (samples_.size() > 2 && time - samples_[1].time >= window_) samples_.pop_front();
   const Nanoseconds span = time - samples_.front().time;
   if (span < window_ || span <= Nanoseconds(0)) return;
-  k_per_min_ = kSecondsPerMinute * (celsius - samples_.front().celsius) / ToSeconds(span);
+  k_per_min_ = kSPerMin * (celsius - samples_.front().celsius) / ToSeconds(span);
 }
 
 WarmUpWatch::WarmUpWatch(const NucOptions& options)

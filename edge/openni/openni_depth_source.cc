@@ -5,21 +5,18 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 
 OpenniDepthSource::OpenniDepthSource(const DepthCameraOptions& options, double file_rate,
                                      const Clock& clock)
-    : options_(std::make_unique<const DepthCameraOptions>(options)),
-      file_rate_(file_rate),
-      clock_(clock) {}
+    : options_(options), file_rate_(file_rate), clock_(clock) {}
 
 OpenniDepthSource::~OpenniDepthSource() = default;
 
 Status OpenniDepthSource::Open() {
   device_.reset();  // The library must let go of the camera before it is opened again.
-  Result<std::unique_ptr<OpenniDevice>> device = OpenniDevice::Open(*options_, file_rate_);
+  Result<std::unique_ptr<OpenniDevice>> device = OpenniDevice::Open(options_, file_rate_);
   if (!device) return device.error();
   device_ = std::move(*device);
   // The camera's counter starts anew when it is opened.
@@ -82,7 +79,7 @@ void OpenniDepthSource::PlaceInTime(RawFrame& raw) {
 
 Status OpenniDepthSource::CheckStall() const {
   const Nanoseconds silent = clock_.SteadyNow() - last_frame_at_;
-  if (silent < FromSeconds(options_->expert().stall_timeout_s())) return OkStatus();
+  if (silent < FromSeconds(options_.expert().stall_timeout_s())) return OkStatus();
   return Unavailable(fmt::format("no frame for {:.1f} s", ToSeconds(silent)));
 }
 

@@ -8,12 +8,11 @@
 #include "common/time/clock.h"
 #include "edge/openni/openni_device.h"
 #include "edge/openni/tick_unwrapper.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/frame_source.h"
 #include "edge/source/missed_frames.h"
 
 namespace isotherm {
-
-class DepthCameraOptions;
 
 /// Frames of a depth camera through OpenNI2, or of an .oni file. Arrival is when the library hands
 /// over the whole frame. The camera's own frame count becomes the frame number, so that frames lost
@@ -41,7 +40,7 @@ class OpenniDepthSource final : public FrameSource {
   void PlaceInTime(RawFrame& raw);
   Status CheckStall() const;
 
-  const std::unique_ptr<const DepthCameraOptions> options_;
+  const DepthCameraOptions options_;
   const double file_rate_;
   const Clock& clock_;
   std::unique_ptr<OpenniDevice> device_;  ///< Null: closed.

@@ -38,8 +38,8 @@ std::string ModeText(const openni::VideoMode& mode) {
 
 openni::VideoMode WantedMode(const DepthCameraOptions& options) {
   openni::VideoMode mode;
-  mode.setResolution(options.width(), options.height());
-  mode.setFps(options.rate_hz());
+  mode.setResolution(options.expert().width(), options.expert().height());
+  mode.setFps(options.expert().rate_hz());
   mode.setPixelFormat(options.expert().unit() == TENTH_MILLIMETRE
                           ? openni::PIXEL_FORMAT_DEPTH_100_UM
                           : openni::PIXEL_FORMAT_DEPTH_1_MM);
@@ -182,8 +182,8 @@ Result<ActiveSettings> Configure(const DepthCameraOptions& options, openni::Devi
   Result<ActiveSettings> active = ReadSettings(device, stream);
   if (!active) return active;
   const openni::VideoMode wanted = WantedMode(options);
-  if (active->width != options.width() || active->height != options.height() ||
-      active->rate_hz != options.rate_hz() ||
+  if (active->width != options.expert().width() || active->height != options.expert().height() ||
+      active->rate_hz != options.expert().rate_hz() ||
       stream.getVideoMode().getPixelFormat() != wanted.getPixelFormat()) {
     return Err(Unavailable(fmt::format("the camera runs {} and not {}, which it had accepted",
                                        ModeText(stream.getVideoMode()), ModeText(wanted))));

@@ -18,9 +18,18 @@ void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival) {
   const MutexLock lock(mutex_);
   newest_ = feedback;
   ++count_;
-  const Nanoseconds age = arrival - feedback.capture_time;
-  if (time_base_ == TimeBase::kWallClock) latency_.Add(kMsPerS * ToSeconds(age));
-  if (shift_) latency_.Add(kMsPerS * ToSeconds(age - *shift_));
+  if (const auto age = AgeOf(feedback, arrival)) latency_.Add(kMsPerS * ToSeconds(*age));
+}
+
+std::optional<Nanoseconds> FeedbackMonitor::AgeOf(const Feedback& feedback, CaptureTime now) const {
+  const Nanoseconds age = now - feedback.capture_time;
+  if (time_base_ == TimeBase::kWallClock) return age;
+  return shift_ ? std::optional(age - *shift_) : std::nullopt;
+}
+
+std::optional<Nanoseconds> FeedbackMonitor::age(CaptureTime now) const {
+  const MutexLock lock(mutex_);
+  return newest_ ? AgeOf(*newest_, now) : std::nullopt;
 }
 
 std::optional<Feedback> FeedbackMonitor::newest() const {
@@ -29,7 +38,6 @@ std::optional<Feedback> FeedbackMonitor::newest() const {
 }
 
 FeedbackLatency FeedbackMonitor::latency() const {
-  constexpr double kSPerMs = 1e-3;
   const MutexLock lock(mutex_);
   FeedbackLatency latency;
   latency.count = count_;

@@ -22,9 +22,16 @@ class FeedbackMonitor {
   void Add(const Feedback& feedback, CaptureTime arrival);
 
   std::optional<Feedback> newest() const;
+  /// Returns how old at `now` the depth frame is that the newest is about; nullopt if that is not
+  /// known.
+  std::optional<Nanoseconds> age(CaptureTime now) const;
   FeedbackLatency latency() const;
 
  private:
+  /// Nullopt: times are those of a recording, at another pace.
+  std::optional<Nanoseconds> AgeOf(const Feedback& feedback, CaptureTime now) const
+      REQUIRES(mutex_);
+
   const TimeBase time_base_;
   mutable Mutex mutex_;
   /// Wall clock minus capture times.

@@ -26,6 +26,7 @@ TEST(FeedbackMonitorTest, AgeIsFromCaptureToArrival) {
   EXPECT_NEAR(monitor.latency().p50_s, 0.050, 0.050 * kRelativeTolerance);
   EXPECT_NEAR(monitor.latency().p99_s, 0.099, 0.099 * kRelativeTolerance);
   EXPECT_EQ(monitor.newest()->frame_number, 100U);
+  EXPECT_EQ(monitor.age(feedback.capture_time + 3s), 3s) << "it grows while none comes";
 }
 
 TEST(FeedbackMonitorTest, ARecordingsOwnTimesCountFromWhenItsFramesCame) {
@@ -37,6 +38,7 @@ TEST(FeedbackMonitorTest, ARecordingsOwnTimesCountFromWhenItsFramesCame) {
   monitor.NoteCapture(CaptureTime(12s), CaptureTime(1h + 2s + 5ms));
   monitor.Add(feedback, CaptureTime(1h + 50ms));
   EXPECT_NEAR(monitor.latency().p50_s, 0.050, 0.050 * kRelativeTolerance);
+  EXPECT_EQ(monitor.age(CaptureTime(1h + 2s)), 2s);
 }
 
 TEST(FeedbackMonitorTest, TimesAtAnotherPaceHaveNoAge) {
@@ -45,6 +47,7 @@ TEST(FeedbackMonitorTest, TimesAtAnotherPaceHaveNoAge) {
   monitor.Add({}, CaptureTime(1h));
   EXPECT_EQ(monitor.latency().count, 1U);
   EXPECT_TRUE(std::isnan(monitor.latency().p50_s));
+  EXPECT_EQ(monitor.age(CaptureTime(1h)), std::nullopt);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/frame/sensor_name.h"
+#include "common/options/option_problems.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -14,6 +15,25 @@ namespace {
 constexpr std::uint16_t kLastCount = 65534;
 
 }  // namespace
+
+Status Validate(const FrameCheckOptions& options) {
+  OptionProblems problems("frame_check");
+  problems.CheckRange("expert.min_celsius", options.expert().min_celsius(), -273.0, 3000.0);
+  problems.CheckRange("expert.max_celsius", options.expert().max_celsius(), -273.0, 3000.0);
+  if (options.expert().max_celsius() <= options.expert().min_celsius()) {
+    problems.Add("expert.max_celsius",
+                 fmt::format("is {}, must be above min_celsius, which is {}",
+                             options.expert().max_celsius(), options.expert().min_celsius()));
+  }
+  problems.CheckRange("expert.max_bad_in_a_row", options.expert().max_bad_in_a_row(), 1, 100'000);
+  problems.CheckRange("expert.retry_min_s", options.expert().retry_min_s(), 0.01, 60.0);
+  problems.CheckRange("expert.min_valid_ratio", options.expert().min_valid_ratio(), 0.0, 1.0);
+  problems.CheckRange("expert.blind_after_s", options.expert().blind_after_s(), 0.0, 60.0);
+  // The longest wait is not below the first one: the back-off only grows.
+  problems.CheckRange("expert.retry_max_s", options.expert().retry_max_s(),
+                      options.expert().retry_min_s(), 600.0);
+  return problems.ToStatus();
+}
 
 FrameCheck::FrameCheck(const FrameCheckOptions& options)
     : min_celsius_(options.expert().min_celsius()), max_celsius_(options.expert().max_celsius()) {}

@@ -11,6 +11,8 @@ namespace isotherm {
 
 class FrameCheckOptions;
 
+Status Validate(const FrameCheckOptions& options);
+
 /// Refuses frames that cannot be what the camera saw, before anything uses them, and masks single
 /// values: apparent temperatures out of range become 0 (no value), as do those at the end of the
 /// frame's scale. Depth is left as it is: 0 and

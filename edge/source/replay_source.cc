@@ -7,9 +7,9 @@
 #include <variant>
 
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "common/codec/codec.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/source/pause.h"
 
 namespace isotherm {
 namespace {

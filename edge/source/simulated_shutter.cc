@@ -3,18 +3,17 @@
 #include "common/base/noise.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulated_scan.h"
-#include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_errors.h"
 
 namespace isotherm {
 
 SimulatedShutter::SimulatedShutter(const SimulationOptions& options)
-    : options_(std::make_unique<const SimulationOptions>(Resolved(options))) {}
+    : options_(Resolved(options)) {}
 
 SimulatedShutter::~SimulatedShutter() = default;
 
 Status SimulatedShutter::Control(const CameraControl& control) {
-  const ShutterOptions& shutter = options_->shutter();
+  const ShutterOptions& shutter = options_.shutter();
   if (std::holds_alternative<TriggerNuc>(control)) {
     ordered_ = shutter.expert().follows_orders();
     return OkStatus();
@@ -49,10 +48,10 @@ void SimulatedShutter::Apply(RawFrame& frame) {
 }
 
 void SimulatedShutter::FollowOrder(CaptureTime time) {
-  if (ordered_) closes_at_ = time + FromSeconds(options_->shutter().expert().order_delay_s());
+  if (ordered_) closes_at_ = time + FromSeconds(options_.shutter().expert().order_delay_s());
   ordered_ = false;
   if (closes_at_ && time >= *closes_at_) {
-    opens_at_ = time + FromSeconds(options_->shutter().duration_s());
+    opens_at_ = time + FromSeconds(options_.shutter().duration_s());
     closes_at_.reset();
   }
   if (opens_at_ && time >= *opens_at_) opens_at_.reset();
@@ -66,12 +65,12 @@ void SimulatedShutter::Correct(const RawFrame& frame) {
     correction_k_ = 0.0;
     return;
   }
-  correction_k_ = options_->drift().error_per_kelvin() *
+  correction_k_ = options_.drift().error_per_kelvin() *
                   static_cast<double>(*scan_reference_celsius_ - housing_celsius);
 }
 
 void SimulatedShutter::ShowShutter(RawFrame& frame) const {
-  const ShutterOptions& shutter = options_->shutter();
+  const ShutterOptions& shutter = options_.shutter();
   if (shutter.expert().appearance() == ShutterOptions::FREEZE) {
     // As cameras do that repeat the last image while they correct.
     if (!last_open_.empty()) frame.pixels = last_open_;
@@ -81,15 +80,15 @@ void SimulatedShutter::ShowShutter(RawFrame& frame) const {
   const auto pixels = frame.pixels.pixels();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const double noise_k =
-        options_->thermal().expert().netd_kelvin() *
-        static_cast<double>(NormalNoise(NoiseStream(options_->seed(), 0, frame.frame_number), i));
+        options_.thermal().expert().netd_kelvin() *
+        static_cast<double>(NormalNoise(NoiseStream(options_.seed(), 0, frame.frame_number), i));
     pixels[i] = frame.thermal_scale.NearestCountOf(celsius + noise_k);
   }
 }
 
 void SimulatedShutter::Say(RawFrame& frame, bool closed) {
   // Then the edge must infer the shutter from the images, which this is to try.
-  if (!options_->shutter().expert().reports_shutter()) {
+  if (!options_.shutter().expert().reports_shutter()) {
     frame.shutter_closed = false;
     frame.camera_nuc.reset();
     return;

@@ -5,11 +5,10 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
+#include "common/simulation/simulation_options.pb.h"
 #include "edge/source/frame_source.h"
 
 namespace isotherm {
-
-class SimulationOptions;
 
 /// The shutter of a simulated thermal camera, for a scan that was rendered beforehand: closes it
 /// when it is told to, by putting shutter images, or the last one again, into frames that go by.
@@ -37,7 +36,7 @@ class SimulatedShutter {
   void ShowShutter(RawFrame& frame) const;
   void Say(RawFrame& frame, bool closed);
 
-  const std::unique_ptr<const SimulationOptions> options_;
+  const SimulationOptions options_;
   bool ordered_ = false;
   std::optional<CaptureTime> closes_at_;
   std::optional<CaptureTime> opens_at_;  ///< While it is closed by order.

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/source/pause.h"
 
 namespace isotherm {
 

@@ -6,13 +6,13 @@
 #include <stop_token>
 
 #include "common/time/clock.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/frame_source.h"
 #include "edge/source/simulated_shutter.h"
 
 namespace isotherm {
 
 class ReplaySource;
-class SourceOptions;
 
 /// A simulated scan. The first Open renders it into the cache, with a progress bar, or finds it
 /// there; then it is replayed like any recording, so that a live run spends its cores on the
@@ -35,7 +35,7 @@ class SyntheticSource final : public FrameSource {
  private:
   Result<std::filesystem::path> RenderOrFind() const;
 
-  const std::unique_ptr<const SourceOptions> options_;
+  const SourceOptions options_;
   const Clock& clock_;
   const std::stop_token stop_;
   std::unique_ptr<ReplaySource> replay_;

@@ -14,8 +14,8 @@ constexpr Nanoseconds kMeasuring = std::chrono::seconds(5);
 }  // namespace
 
 DiskWatch::DiskWatch(const SpoolOptions& options)
-    : max_reserve_bytes_(options.reserve_mb() * kBytesPerMb),
-      reserve_s_(options.reserve_s()),
+    : max_reserve_bytes_(options.expert().reserve_mb() * kBytesPerMb),
+      reserve_s_(options.expert().reserve_s()),
       warn_s_(options.expert().warn_s()) {}
 
 void DiskWatch::Measure(SteadyTime now, std::uint64_t recorded_bytes) {

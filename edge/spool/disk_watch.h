@@ -18,7 +18,7 @@ enum class DiskLevel : std::uint8_t {
 };
 
 /// Assesses how long a recording can go on, by the space that is free and how fast the recording
-/// grows. The reserve is spool.reserve_mb, or what is recorded in spool.reserve_s if that is less.
+/// grows. The reserve is spool.expert.reserve_mb, or what is recorded in reserve_s if that is less.
 /// At kReserve it stays until twice the reserve is free. Thread-compatible.
 class DiskWatch {
  public:

@@ -8,6 +8,7 @@
 
 #include "common/base/log.h"
 #include "common/base/units.h"
+#include "common/options/option_problems.h"
 #include "common/recording/feedback_record.h"
 #include "common/recording/recording_parts.h"
 #include "edge/options/edge_options.pb.h"
@@ -24,6 +25,17 @@ constexpr Nanoseconds kLookInterval = std::chrono::seconds(1);
 constexpr Nanoseconds kProven = std::chrono::seconds(3);
 
 }  // namespace
+
+Status Validate(const SpoolOptions& options) {
+  OptionProblems problems("spool");
+  if (options.record().empty()) problems.Add("record", "is empty; name a file or say \"off\"");
+  problems.CheckRange("expert.queue_frames", options.expert().queue_frames(), 1, 100'000);
+  problems.CheckRange("expert.flush_interval_s", options.expert().flush_interval_s(), 0.05, 1.0);
+  problems.CheckRange("expert.reserve_s", options.expert().reserve_s(), 0.0, 86'400.0);
+  problems.CheckRange("expert.reserve_mb", options.expert().reserve_mb(), 0, 1'000'000);
+  problems.CheckRange("expert.warn_s", options.expert().warn_s(), 0.0, 86'400.0);
+  return problems.ToStatus();
+}
 
 Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options) {}
 
@@ -123,10 +135,11 @@ void Spool::AskForFreeBytes() {
 void Spool::EndAtReserve() {
   if (std::exchange(at_reserve_, true)) return;
   const Status closed = IsRecording() ? CloseFile() : OkStatus();
-  problem_ = ResourceExhausted(fmt::format(
-      "the disk is full but for its reserve of {:.0f} MB (spool.reserve_mb, reserve_s): {} is "
-      "complete up to here, no frame is recorded from now on; delete old recordings",
-      disk_.reserve_bytes() / kBytesPerMb, path_.string()));
+  problem_ = ResourceExhausted(
+      fmt::format("the disk is full but for its reserve of {:.0f} MB (spool.expert.reserve_mb, "
+                  "reserve_s): {} is "
+                  "complete up to here, no frame is recorded from now on; delete old recordings",
+                  disk_.reserve_bytes() / kBytesPerMb, path_.string()));
   if (first_error_.ok()) first_error_ = closed.ok() ? problem_ : closed;
   LOG(Spool, Error) << problem_.message() << "; publishing goes on";
 }

@@ -24,6 +24,8 @@ namespace isotherm {
 
 class SpoolOptions;
 
+Status Validate(const SpoolOptions& options);
+
 /// One file of a recording.
 struct RecordingFile {
   std::filesystem::path path;

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/frame/radiometric_scale.h"
+#include "common/options/option_problems.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/thermal_camera/lepton_camera.h"
 #include "edge/thermal_camera/optris_camera.h"
@@ -51,10 +53,10 @@ std::unique_ptr<ThermalCamera> MakeSeek(const DeviceDescription& device,
 
 std::unique_ptr<ThermalCamera> MakeOptris(const DeviceDescription& device,
                                           const ThermalCameraOptions& options, const Clock& clock) {
-  OptrisSettings settings{options.expert().optris_library(), options.optris_config(),
+  OptrisSettings settings{options.expert().optris_library(), options.expert().optris_config(),
                           options.expert().optris_formats(), std::nullopt};
-  if (options.has_optris_min_celsius() && options.has_optris_max_celsius()) {
-    settings.range = {options.optris_min_celsius(), options.optris_max_celsius()};
+  if (options.expert().has_optris_min_celsius() && options.expert().has_optris_max_celsius()) {
+    settings.range = {options.expert().optris_min_celsius(), options.expert().optris_max_celsius()};
   }
   return std::make_unique<OptrisCamera>(device.bus_port, std::move(settings), clock);
 }
@@ -121,6 +123,36 @@ std::string Text(const std::vector<DeviceDescription>& devices) {
 }
 
 }  // namespace
+
+Status Validate(const ThermalCameraOptions& options) {
+  OptionProblems problems("source.thermal_camera");
+  problems.CheckRange("expert.stall_timeout_s", options.expert().stall_timeout_s(), 0.2, 60.0);
+  problems.CheckRange("expert.kelvin_per_count", options.expert().kelvin_per_count(), 0.0, 10.0);
+  problems.CheckRange("expert.offset_kelvin", options.expert().offset_kelvin(), -1e5, 1e4);
+  // It becomes the frames' scale where centi-kelvin would cut it off.
+  const RadiometricScale own{options.expert().kelvin_per_count(), options.expert().offset_kelvin()};
+  if (own.kelvin_per_count > 0.0 && own.max_celsius() > kCentikelvin.max_celsius()) {
+    if (Status status = Validate(own); !status.ok())
+      problems.Add("expert.kelvin_per_count", status.message());
+  }
+  if (options.expert().has_optris_min_celsius() != options.expert().has_optris_max_celsius()) {
+    problems.Add(options.expert().has_optris_min_celsius() ? "expert.optris_max_celsius"
+                                                           : "expert.optris_min_celsius",
+                 "is not set: a range has two ends");
+  } else if (options.expert().has_optris_min_celsius() &&
+             options.expert().optris_max_celsius() <= options.expert().optris_min_celsius()) {
+    problems.Add(
+        "expert.optris_max_celsius",
+        fmt::format("is {}, must be above optris_min_celsius, which is {}",
+                    options.expert().optris_max_celsius(), options.expert().optris_min_celsius()));
+  } else if (options.expert().has_optris_min_celsius()) {
+    // Found out now instead of when the camera is opened.
+    const auto scale =
+        ScaleForRange(options.expert().optris_min_celsius(), options.expert().optris_max_celsius());
+    if (!scale) problems.Add("expert.optris_max_celsius", scale.error().message());
+  }
+  return problems.ToStatus();
+}
 
 std::vector<DeviceDescription> SupportedThermalCameras() {
   std::vector<DeviceDescription> cameras;

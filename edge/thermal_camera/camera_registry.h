@@ -13,6 +13,8 @@ namespace isotherm {
 
 class ThermalCameraOptions;
 
+Status Validate(const ThermalCameraOptions& options);
+
 /// Returns the thermal cameras for which there is a driver, connected or not.
 std::vector<DeviceDescription> SupportedThermalCameras();
 

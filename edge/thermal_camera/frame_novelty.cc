@@ -16,7 +16,8 @@ Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
   Novelty novelty;
   if (repeated) {
     ++repeats_;
-    novelty.kind = repeats_ > max_repeats_ ? Novelty::Kind::kFrozen : Novelty::Kind::kRepeat;
+    novelty.kind =
+        IsFrozen(repeats_, native_repeats_) ? Novelty::Kind::kFrozen : Novelty::Kind::kRepeat;
     novelty.frozen_for = frame.first_packet.steady - first_seen_;
   } else {
     novelty.lost = LostBefore(frame);

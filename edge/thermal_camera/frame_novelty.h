@@ -27,7 +27,7 @@ struct Novelty {
 class FrameNovelty {
  public:
   /// `counter_step`, `native_repeats`: see ThermalCameraInfo.
-  FrameNovelty(int counter_step, int native_repeats) : max_repeats_(3 * native_repeats) {
+  FrameNovelty(int counter_step, int native_repeats) : native_repeats_(native_repeats) {
     if (counter_step > 0) missed_.emplace(static_cast<std::uint64_t>(counter_step));
   }
 
@@ -36,7 +36,7 @@ class FrameNovelty {
  private:
   std::uint64_t LostBefore(const RawThermalFrame& frame);
 
-  const int max_repeats_;
+  const int native_repeats_;
   std::optional<MissedFrames> missed_;  ///< Absent: the camera does not count.
   std::optional<std::uint64_t> counter_;
   RepeatDetector images_;

@@ -128,7 +128,7 @@ Status OptrisCamera::Open() {
   Close();
   if (settings_.config.empty()) {
     return InvalidArgument(
-        "source.thermal_camera.optris_config is empty; name the camera's XML file");
+        "source.thermal_camera.expert.optris_config is empty; name the camera's XML file");
   }
   ISOTHERM_RETURN_IF_ERROR(Load());
   // usb_init may have succeeded before something else failed: the camera must be given back.
@@ -172,7 +172,8 @@ Status OptrisCamera::SetRange() {
   if (library_->set_range(lowest, highest) != 0) {
     return FailedPrecondition(fmt::format(
         "the Optris camera has no range of {} to {} degrees Celsius: take one that its calibration "
-        "files are named after (source.thermal_camera.optris_min_celsius, optris_max_celsius)",
+        "files are named after (source.thermal_camera.expert.optris_min_celsius, "
+        "optris_max_celsius)",
         lowest, highest));
   }
   info_.settings = fmt::format("range {} to {} degrees Celsius", lowest, highest);

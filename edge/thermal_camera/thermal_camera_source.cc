@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {
@@ -42,9 +41,7 @@ std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions&
 
 ThermalCameraSource::ThermalCameraSource(const ThermalCameraOptions& options, const Clock& clock,
                                          Cameras cameras)
-    : options_(std::make_unique<const ThermalCameraOptions>(options)),
-      clock_(clock),
-      cameras_(std::move(cameras)) {}
+    : options_(options), clock_(clock), cameras_(std::move(cameras)) {}
 
 ThermalCameraSource::~ThermalCameraSource() = default;
 
@@ -52,7 +49,7 @@ Status ThermalCameraSource::Open() {
   Close();
   const Result<std::vector<DeviceDescription>> devices = cameras_.list();
   if (!devices) return devices.error();
-  const Result<DeviceDescription> device = ChooseThermalCamera(*devices, *options_, serial_);
+  const Result<DeviceDescription> device = ChooseThermalCamera(*devices, options_, serial_);
   if (!device) return device.error();
   if (!device->problem.empty()) {
     return FailedPrecondition(fmt::format("thermal camera {} at {}: {}", device->driver,
@@ -60,7 +57,7 @@ Status ThermalCameraSource::Open() {
   }
   camera_ = cameras_.make(*device);
   Status opened = camera_->Open();
-  if (opened.ok()) opened = camera_->SetGain(GainOf(options_->gain()));
+  if (opened.ok()) opened = camera_->SetGain(GainOf(options_.gain()));
   if (opened.ok() && !scale_) {
     const Result<RadiometricScale> scale = ChooseScale();
     if (scale) scale_ = *scale;
@@ -80,6 +77,7 @@ Status ThermalCameraSource::Open() {
   frozen_ = false;
   incomplete_ = false;
   incomplete_since_ = 0;
+  told_temperatures_ = false;
   LOG(Thermal, Info) << name_ << " opened, product=\"" << info.product << "\" serial=\""
                      << info.serial << "\" port=" << info.bus_port << " width=" << info.width
                      << " height=" << info.height << " settings=\"" << info.settings << "\"";
@@ -105,7 +103,7 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
     return Check(std::move(**raw));
   }
   const Nanoseconds silence = clock_.SteadyNow() - last_frame_at_;
-  if (ToSeconds(silence) < options_->expert().stall_timeout_s()) return NothingYet{};
+  if (ToSeconds(silence) < options_.expert().stall_timeout_s()) return NothingYet{};
   return Err(Hangs("sends nothing", silence));
 }
 
@@ -116,23 +114,20 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     counts_.lost += raw.dropped_before;
     next_frame_number_ += raw.dropped_before;
   }
-  if (raw.incomplete) {
-    ++counts_.incomplete;
-    ++incomplete_since_;
-    if (!std::exchange(incomplete_, true)) {
-      LOG(Thermal, Warning) << name_ << ": incomplete frame, number=" << next_frame_number_;
-    }
-    // Delivered without pixels, so that the frame check refuses and counts it under its number.
-    raw.counts = {};
-    return Convert(raw);
-  }
-  incomplete_ = false;
+  if (raw.incomplete) return WithoutPixels(std::move(raw), "incomplete frame");
   if (!EncodingOf(raw).radiometric && !camera_->info().counts_only) {
+    // A wrong bit of what the camera says beside an image; ten in a row open it again
+    // (SupervisedSource).
+    if (told_temperatures_) {
+      return WithoutPixels(std::move(raw), "frame that says that it has no temperatures");
+    }
     return Err(
         FailedPrecondition(name_ +
                            " sends counts that it does not relate to temperatures; say how in "
                            "source.thermal_camera.expert.kelvin_per_count and offset_kelvin"));
   }
+  incomplete_ = false;
+  told_temperatures_ = true;
   const Novelty novelty = novelty_->Process(raw);
   // Incomplete frames have their numbers already.
   const std::uint64_t lost = novelty.lost - std::min(novelty.lost, incomplete_since_);
@@ -146,7 +141,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
   }
   const bool frozen = novelty.kind == Novelty::Kind::kFrozen && !IsCorrecting(raw);
   // Long enough to be no correction: the source is opened again, which cures cameras that hang so.
-  if (frozen && ToSeconds(novelty.frozen_for) >= options_->expert().stall_timeout_s()) {
+  if (frozen && ToSeconds(novelty.frozen_for) >= options_.expert().stall_timeout_s()) {
     return Err(Hangs("sends the same image", novelty.frozen_for));
   }
   if (frozen) {
@@ -163,6 +158,16 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
   }
   frozen_ = frozen;
   ++counts_.delivered;
+  return Convert(raw);
+}
+
+RawFrame ThermalCameraSource::WithoutPixels(RawThermalFrame raw, std::string_view what) {
+  ++counts_.incomplete;
+  ++incomplete_since_;
+  if (!std::exchange(incomplete_, true)) {
+    LOG(Thermal, Warning) << name_ << ": " << what << ", number=" << next_frame_number_;
+  }
+  raw.counts = {};
   return Convert(raw);
 }
 
@@ -191,8 +196,8 @@ RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
 }
 
 PixelEncoding ThermalCameraSource::EncodingOf(const RawThermalFrame& raw) const {
-  if (raw.encoding.radiometric || options_->expert().kelvin_per_count() == 0.0) return raw.encoding;
-  return {true, options_->expert().kelvin_per_count(), options_->expert().offset_kelvin()};
+  if (raw.encoding.radiometric || options_.expert().kelvin_per_count() == 0.0) return raw.encoding;
+  return {true, options_.expert().kelvin_per_count(), options_.expert().offset_kelvin()};
 }
 
 void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
@@ -216,7 +221,7 @@ Result<RadiometricScale> ThermalCameraSource::ChooseScale() const {
     scale = *of_range;
   }
   // What the options make of counts is kept as it is where that would cut it off.
-  const ThermalCameraExpertOptions& expert = options_->expert();
+  const ThermalCameraExpertOptions& expert = options_.expert();
   const RadiometricScale own{expert.kelvin_per_count(), expert.offset_kelvin()};
   if (own.kelvin_per_count <= 0.0 || own.max_celsius() <= scale.max_celsius()) return scale;
   if (Status status = Validate(own); !status.ok()) {
@@ -244,7 +249,7 @@ std::vector<CameraDescription> ThermalCameraSource::cameras() const {
   description.rate_hz = info.rate_hz;
   description.settings = "port " + info.bus_port;
   if (!info.settings.empty()) description.settings += ", " + info.settings;
-  description.counts_only = info.counts_only && options_->expert().kelvin_per_count() == 0.0;
+  description.counts_only = info.counts_only && options_.expert().kelvin_per_count() == 0.0;
   description.thermal_scale = *scale_;
   return {description};
 }

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "common/time/clock.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/frame_source.h"
 #include "edge/thermal_camera/camera_registry.h"
 #include "edge/thermal_camera/frame_novelty.h"
 #include "edge/thermal_camera/thermal_camera.h"
 
 namespace isotherm {
-
-class ThermalCameraOptions;
 
 /// The thermal camera of this computer that the options ask for. `clock` must outlive it.
 std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions& options,
@@ -67,6 +66,8 @@ class ThermalCameraSource final : public FrameSource {
 
  private:
   Result<SourceItem> Check(RawThermalFrame raw);
+  /// Returns a frame that is refused and counted further on, but has its number.
+  RawFrame WithoutPixels(RawThermalFrame raw, std::string_view what);
   RawFrame Convert(const RawThermalFrame& raw);
   /// `what` and how long it has lasted, as a failure.
   Status Hangs(const std::string& what, Nanoseconds duration) const;
@@ -76,7 +77,7 @@ class ThermalCameraSource final : public FrameSource {
   Result<RadiometricScale> ChooseScale() const;
   void UpdateTable(const PixelEncoding& encoding);
 
-  const std::unique_ptr<const ThermalCameraOptions> options_;
+  const ThermalCameraOptions options_;
   const Clock& clock_;
   const Cameras cameras_;
   std::string name_ = "thermal camera";
@@ -89,6 +90,7 @@ class ThermalCameraSource final : public FrameSource {
   SteadyTime last_frame_at_{};
   std::uint64_t next_frame_number_ = 0;
   bool frozen_ = false;
+  bool told_temperatures_ = false;      ///< By a frame since it was opened.
   bool incomplete_ = false;             ///< The last frame was incomplete.
   std::uint64_t incomplete_since_ = 0;  ///< Since the last whole frame.
   ThermalCameraCounts counts_;

@@ -213,6 +213,24 @@ TEST_F(ThermalCameraSourceTest, CountsWithoutTemperatureAreRefusedUnlessTheOptio
   EXPECT_NEAR(frame.thermal_scale.Kelvin(frame.pixels.At(0, 0)), 300.0, 1e-9);
 }
 
+TEST_F(ThermalCameraSourceTest, F11AWrongBitOfTheEncodingCostsItsFrameAndNothingElse) {
+  Send(MakeFrame(1, 100));
+  RawThermalFrame wrong = MakeFrame(2, 103);
+  wrong.encoding.radiometric = false;
+  Send(wrong);
+  Send(MakeFrame(3, 106));
+  const auto source = Open();
+  ReadFrame(*source);
+  const RawFrame refused = ReadFrame(*source);
+  EXPECT_TRUE(refused.pixels.empty()) << "its counts are not taken for temperatures";
+  EXPECT_EQ(refused.frame_number, 1U);
+  const RawFrame next = ReadFrame(*source);
+  EXPECT_FALSE(next.pixels.empty());
+  EXPECT_EQ(next.frame_number, 2U);
+  EXPECT_EQ(source->counts().lost, 0U);
+  EXPECT_EQ(script_.opened, 1);
+}
+
 TEST_F(ThermalCameraSourceTest, LostFramesLeaveHolesInTheNumbers) {
   Send(MakeFrame(1, 100));
   Send(MakeFrame(2, 109));
@@ -240,7 +258,7 @@ TEST_F(ThermalCameraSourceTest, F05FrozenFramesAreNotGoodAndThenTheCameraIsReope
   for (int i = 0; i < 40; ++i) Send(MakeFrame(1, 100));
   const auto source = Open();
   EXPECT_FALSE(ReadFrame(*source).shutter_closed);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::holds_alternative<NothingYet>(Read(*source)));
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(std::holds_alternative<NothingYet>(Read(*source)));
   // Known within half a second, ...
   const RawFrame frozen = ReadFrame(*source);
   EXPECT_TRUE(frozen.shutter_closed);
@@ -249,7 +267,7 @@ TEST_F(ThermalCameraSourceTest, F05FrozenFramesAreNotGoodAndThenTheCameraIsReope
   // ... given up after two.
   int frames = 1;
   while (std::holds_alternative<RawFrame>(Read(*source))) ++frames;
-  EXPECT_EQ(frames, 16);  // From 0.4 to 1.9 s.
+  EXPECT_EQ(frames, 17);  // From 0.3 to 1.9 s.
   EXPECT_EQ(failure_.code(), StatusCode::kUnavailable);
   EXPECT_THAT(failure_.message(), HasSubstr("the same image"));
 }
@@ -262,7 +280,7 @@ TEST_F(ThermalCameraSourceTest, FrozenImageOfASilentCameraIsACorrection) {
     Send(frame);
   }
   const auto source = Open();
-  for (int i = 0; i < 4; ++i) Read(*source);
+  for (int i = 0; i < 3; ++i) Read(*source);
   EXPECT_EQ(ReadFrame(*source).camera_nuc->state, NucState::kInProgress);
 }
 

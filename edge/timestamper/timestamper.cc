@@ -1,5 +1,6 @@
 #include "edge/timestamper/timestamper.h"
 
+#include "common/options/option_problems.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -23,8 +24,25 @@ EnvelopeOptions ToEnvelopeOptions(const TimestamperOptions& options, Sensor sens
 
 }  // namespace
 
+Status Validate(const TimestamperOptions& options) {
+  OptionProblems problems("timestamper");
+  problems.CheckRange("expert.depth_window", options.expert().depth_window(), 1, 1000);
+  problems.CheckRange("expert.thermal_window", options.expert().thermal_window(), 1, 1000);
+  problems.CheckRange("expert.depth_delay_s", options.expert().depth_delay_s(), -1.0, 1.0);
+  problems.CheckRange("expert.thermal_delay_s", options.expert().thermal_delay_s(), -1.0, 1.0);
+  problems.CheckRange("expert.envelope_window_s", options.expert().envelope_window_s(), 1.0, 600.0);
+  problems.CheckRange("expert.max_skew_ppm", options.expert().max_skew_ppm(), 0.0, 100'000.0);
+  problems.CheckRange("expert.max_slew_ppm", options.expert().max_slew_ppm(), 1.0, 100'000.0);
+  problems.CheckRange("expert.early_limit_s", options.expert().early_limit_s(), 0.0001, 10.0);
+  problems.CheckRange("expert.residual_limit_s", options.expert().residual_limit_s(), 0.0001, 10.0);
+  problems.CheckRange("expert.residual_window_s", options.expert().residual_window_s(), 0.1,
+                      options.expert().envelope_window_s());
+  problems.CheckRange("expert.relearn_after_s", options.expert().relearn_after_s(), 0.1, 600.0);
+  return problems.ToStatus();
+}
+
 Timestamper::Timestamper(const TimestamperOptions& options, Sensor sensor, Nanoseconds rig_delay)
-    : use_envelope_(options.estimator() == ENVELOPE),
+    : use_envelope_(options.expert().estimator() == ENVELOPE),
       constant_delay_(FromSeconds(sensor == Sensor::kDepth ? options.expert().depth_delay_s()
                                                            : options.expert().thermal_delay_s()) +
                       rig_delay),

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/stamping/envelope_clock.h"
 #include "common/stamping/median_clock.h"
@@ -13,6 +14,8 @@
 namespace isotherm {
 
 class TimestamperOptions;
+
+Status Validate(const TimestamperOptions& options);
 
 /// Counts how often something had to be done about a camera's clock.
 struct StampingCounts {

@@ -14,7 +14,7 @@ constexpr CaptureTime kEpoch{seconds(1'700'000'000)};
 
 class TimestamperTest : public testing::TestWithParam<StampEstimator> {
  protected:
-  TimestamperTest() { options_.set_estimator(GetParam()); }
+  TimestamperTest() { options_.mutable_expert()->set_estimator(GetParam()); }
 
   Timestamper Make(Nanoseconds rig_delay = Nanoseconds(0)) const {
     return Timestamper(options_, Sensor::kThermal, rig_delay);

@@ -61,10 +61,21 @@ std::unique_ptr<SubMap> Atlas::MakeMap() const {
   auto map = std::make_unique<SubMap>();
   map->tsdf = std::make_unique<TsdfVolume>(
       grid_, TruncationDistance(options_.tsdf(), options_.volume()), max_blocks, spill_dir);
-  map->thermal =
-      std::make_unique<ThermalVolume>(max_blocks, spill_dir, options_.thermal().expert().records());
+  map->thermal = MakeThermal(max_blocks);
   map->relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), depth_camera_);
   return map;
+}
+
+std::unique_ptr<ThermalVolume> Atlas::MakeThermal(std::int32_t max_blocks) const {
+  return std::make_unique<ThermalVolume>(max_blocks, options_.volume().spill_dir(),
+                                         options_.thermal().expert().records());
+}
+
+bool Atlas::ForgetTemperatures() {
+  SubMap& map = active();
+  map.thermal.reset();  // Its memory is given back before the new one takes any.
+  map.thermal = MakeThermal(map.tsdf->max_blocks());
+  return map.thermal->Commit(map.tsdf->block_count());
 }
 
 std::int32_t Atlas::BlocksLeft() const {

@@ -71,6 +71,10 @@ class Atlas {
   void Link(int other, const RigidTransform& T_active_depth, const RigidTransform& T_other_depth);
   const DriftReport& drift() const { return drift_; }
 
+  /// Forgets the temperatures of the active sub-map, and what is known about them. False if there
+  /// is no room for new ones.
+  bool ForgetTemperatures();
+
   /// Puts all joined sub-maps into the first one, which becomes the active one. The others, which
   /// were never joined, stay apart. `progress` gets a fraction 0..1. False if there was no room for
   /// all temperatures.
@@ -78,6 +82,7 @@ class Atlas {
 
  private:
   std::unique_ptr<SubMap> MakeMap() const;
+  std::unique_ptr<ThermalVolume> MakeThermal(std::int32_t max_blocks) const;
   std::int32_t BlocksLeft() const;
 
   const GroundOptions options_;

@@ -23,7 +23,7 @@ RigidTransform Rotated(double angle_deg, const Eigen::Vector3d& translation = {0
 class AtlasTest : public ::testing::Test {
  protected:
   AtlasTest() {
-    options_.mutable_tsdf()->set_truncation_distance_m(testing::kTruncation_m);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(testing::kTruncation_m);
     options_.mutable_submaps()->mutable_expert()->set_max_rotation_deg(60.0);
     options_.mutable_submaps()->mutable_expert()->set_max_travel_m(1.0);
   }
@@ -87,7 +87,7 @@ TEST_F(AtlasTest, ASplitTakesOverWhatIsInView) {
 
 TEST_F(AtlasTest, AllSubMapsShareOneMemoryLimit) {
   const double table_bytes = 125 * sizeof(std::int32_t);
-  options_.mutable_volume()->set_max_memory_bytes(
+  options_.mutable_volume()->mutable_expert()->set_max_memory_bytes(
       static_cast<std::uint64_t>(table_bytes + 30.5 * kBlockVoxels * 8));
   Atlas atlas = Make();
   Fill(atlas.active(), kCentre);

@@ -127,8 +127,8 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
     }
     voxels[i] = other;
     // The record's directions are turned into the target's axes.
-    AdoptRecord(source.thermal, from, offset, source.T_target_source.linear().cast<float>(), block,
-                i, thermal);
+    AdoptRecord(source.thermal, {from, offset}, source.T_target_source.linear().cast<float>(),
+                thermal, {block, i});
   }
 }
 

@@ -10,7 +10,7 @@
 #include "common/base/log.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/scan_views.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 namespace {
@@ -97,7 +97,7 @@ DelayVerdict Assess(const DelayEstimate& off_by, double max_shift_s) {
 
 std::string Describe(const DelayReport& report) {
   if (!report.off_by) {
-    return report.verdict == DelayVerdict::kOff ? "not checked (delay_check.enabled)"
+    return report.verdict == DelayVerdict::kOff ? "not checked (delay_check.expert.enabled)"
                                                 : "could not be checked: " + report.reason;
   }
   const bool moved = report.verdict == DelayVerdict::kMoved;
@@ -119,7 +119,7 @@ DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
       selection_(static_cast<std::size_t>(std::max(2, options.expert().max_frames()))) {}
 
 void DelayCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
-  if (!options_.enabled() || !rig_.thermal || !frame->valid ||
+  if (!options_.expert().enabled() || !rig_.thermal || !frame->valid ||
       ToSeconds(frame->header.capture_sigma) > kMaxStampSigma_s)
     return;
   if (frame->temperature_raw.width() != rig_.thermal->width ||
@@ -128,13 +128,13 @@ void DelayCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
   selection_.Add(frame, SpeedNow(scan, *rig_.thermal));
 }
 
-DelayReport DelayCheck::Finish(const ScanModel& scan, ThreadPool& pool,
+DelayReport DelayCheck::Finish(const ScanModel& scan,
                                const std::function<void(double)>& progress) const {
   DelayReport report;
   report.calibrated_s = calibrated_s_;
-  if (!options_.enabled()) return report;
+  if (!options_.expert().enabled()) return report;
   const auto start = std::chrono::steady_clock::now();
-  const Result<DelayEstimate> estimate = Estimate(scan, pool, progress);
+  const Result<DelayEstimate> estimate = Estimate(scan, progress);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   report.elapsed_s = elapsed.count();
   if (!estimate) {
@@ -159,7 +159,7 @@ DelayReport DelayCheck::Finish(const ScanModel& scan, ThreadPool& pool,
   return report;
 }
 
-Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& pool,
+Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan,
                                            const std::function<void(double)>& progress) const {
   if (Status status = CheckThermalFusion(rig_); !status.ok()) return Err(status);
   FindDelayOptions options;
@@ -174,10 +174,10 @@ Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& po
     views.frames.push_back(
         {frame->header.capture_time, {frame, &frame->temperature_raw}, frame->scale, {}});
   }
-  const Status surface = AddSurface(scan, kMaxPoints, options.search.range_s, pool, views,
+  const Status surface = AddSurface(scan, kMaxPoints, options.search.range_s, views,
                                     PartOf(progress, 0.0, kVisibilityFraction));
   if (!surface.ok()) return Err(surface);
-  return FindDelay(views, options, pool, PartOf(progress, kVisibilityFraction, 1.0));
+  return FindDelay(views, options, scan.pool, PartOf(progress, kVisibilityFraction, 1.0));
 }
 
 }  // namespace isotherm

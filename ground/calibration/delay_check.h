@@ -5,7 +5,6 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/rig/rig.h"
 #include "ground/calibration/find_delay.h"
@@ -57,11 +56,10 @@ class DelayCheck {
 
   /// After the pipeline's Finish. Logs a warning if the delay has moved. `progress` gets the
   /// fraction done, 0..1.
-  DelayReport Finish(const ScanModel& scan, ThreadPool& pool,
-                     const std::function<void(double)>& progress) const;
+  DelayReport Finish(const ScanModel& scan, const std::function<void(double)>& progress) const;
 
  private:
-  Result<DelayEstimate> Estimate(const ScanModel& scan, ThreadPool& pool,
+  Result<DelayEstimate> Estimate(const ScanModel& scan,
                                  const std::function<void(double)>& progress) const;
 
   const DelayCheckOptions options_;

@@ -16,7 +16,7 @@
 #include "common/testing/temporary_directory.h"
 #include "ground/calibration/texture_consistency.h"
 #include "ground/pipeline/ground_pipeline.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 #include "ground/tracker/trajectory.h"
 
 namespace isotherm {
@@ -65,7 +65,7 @@ shutter { first_s: 5 })",
   static std::unique_ptr<GroundPipeline> MakePipeline(const RigidTransform& initial_pose) {
     GroundOptions options;
     options.mutable_volume()->set_voxel_size_m(0.004);
-    options.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
     return GroundPipeline::Create(options, *rig_, initial_pose).value();
   }
 
@@ -111,7 +111,7 @@ shutter { first_s: 5 })",
           FromSeconds(late_s + kJitter_s * NormalNoise(kSeed, frame->header.frame_number));
       check.Add(std::move(late), scan);
     }
-    const DelayReport report = check.Finish(scan, pipeline_->pool(), {});
+    const DelayReport report = check.Finish(scan, {});
     std::printf("seed %d, stamps late by %+.1f ms, %.2f s: %s\n", static_cast<int>(kSeed),
                 1e3 * late_s, report.elapsed_s, Describe(report).c_str());
     return report;
@@ -180,7 +180,7 @@ TEST_F(DelayCheckTest, PosesThatSlideBehindAGapAreNotUsed) {
                               scan.spiller,
                               scan.thermal_status,
                               scan.is_continued,
-                              scan.threads};
+                              scan.pool};
   const DelayReport report = Check(0.0, 0.0, {}, with_slides);
   ASSERT_EQ(report.verdict, DelayVerdict::kAgrees) << report.reason;
   // With the slides it is 9 ms off, without them 2 to 3 ms, depending on how the compiler rounds.
@@ -232,11 +232,11 @@ TEST_F(DelayCheckTest, FramesWithoutACertainStampAreNotUsed) {
 
 TEST_F(DelayCheckTest, OffKeepsAndSaysNothing) {
   DelayCheckOptions options;
-  options.set_enabled(false);
+  options.mutable_expert()->set_enabled(false);
   DelayCheck check(options, *rig_, 0.0);
   check.Add(frames_.front(), pipeline_->model());
   EXPECT_EQ(frames_.front().use_count(), 1);
-  EXPECT_EQ(check.Finish(pipeline_->model(), pipeline_->pool(), {}).verdict, DelayVerdict::kOff);
+  EXPECT_EQ(check.Finish(pipeline_->model(), {}).verdict, DelayVerdict::kOff);
 }
 
 TEST_F(DelayCheckTest, ABoundedNumberOfFramesIsKept) {

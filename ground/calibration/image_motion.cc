@@ -22,11 +22,12 @@ constexpr double kDriftMemory_s = 4.0;
 // Of the pairs' sum below, a bounded number of terms however long the scan is.
 constexpr std::size_t kMaxVelocities = 1200;
 
+/// The mean of the surface's points.
 Eigen::Vector3d MiddleOfSurface(const ScanViews& views) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
   for (const TexturePoint& point : views.points)
-    middle += point.p_world / static_cast<double>(views.points.size());
-  return middle;
+    p_world += point.p_world / static_cast<double>(views.points.size());
+  return p_world;
 }
 
 /// The velocities less their mean over the part of the motion that they are in.
@@ -50,11 +51,11 @@ std::vector<StampedVelocity> WithoutMeans(std::vector<StampedVelocity> motion, d
 }  // namespace
 
 std::vector<StampedVelocity> ImageVelocities(const ScanViews& views) {
-  const Eigen::Vector3d middle = MiddleOfSurface(views);
+  const Eigen::Vector3d p_world = MiddleOfSurface(views);
   const auto pixel_at = [&](CaptureTime time) -> std::optional<Eigen::Vector2d> {
-    const std::optional<RigidTransform> pose = InterpolatePose(views.trajectory, time);
-    if (!pose) return std::nullopt;
-    const Eigen::Vector3d p_thermal = views.T_thermal_depth * (pose->inverse() * middle);
+    const auto T_world_depth = InterpolatePose(views.trajectory, time);
+    if (!T_world_depth) return std::nullopt;
+    const Eigen::Vector3d p_thermal = views.T_thermal_depth * (T_world_depth->inverse() * p_world);
     if (p_thermal.z() < kMinDepth_m) return std::nullopt;
     return views.thermal_camera.fx * p_thermal.head<2>() / p_thermal.z();
   };
@@ -76,11 +77,11 @@ double RmsSpeed(const std::vector<StampedVelocity>& motion) {
 }
 
 std::optional<double> PixelsPerMetre(const ScanViews& views) {
-  const Eigen::Vector3d middle = MiddleOfSurface(views);
+  const Eigen::Vector3d p_world = MiddleOfSurface(views);
   double depth_m = 0.0;
   int count = 0;
   for (const StampedPose& pose : views.trajectory) {
-    const double z_m = (views.T_thermal_depth * (pose.T_world_depth.inverse() * middle)).z();
+    const double z_m = (views.T_thermal_depth * (pose.T_world_depth.inverse() * p_world)).z();
     if (z_m < kMinDepth_m) continue;
     depth_m += z_m;
     ++count;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/noise.h"
+#include "common/geometry/map_pose.h"
 #include "common/geometry/rectified_camera.h"
 #include "ground/tsdf/raycaster.h"
 
@@ -58,7 +59,7 @@ class PoseViewer {
   PoseView See(const StampedPose& pose) {
     const RigidTransform T_world_thermal = pose.T_world_depth * views_.T_thermal_depth.inverse();
     const RigidTransform T_thermal_world = T_world_thermal.inverse();
-    raycaster_.Cast(tsdf_, ideal_, T_world_thermal, kMinWeight, pool_, maps_);
+    raycaster_.Cast(tsdf_, ideal_, InFirstMap(T_world_thermal), kMinWeight, pool_, maps_);
     MakeDepths(T_thermal_world);
     PoseView view{pose.time, std::vector<std::uint8_t>(views_.points.size(), 0)};
     constexpr int kPointsPerTask = 1024;
@@ -170,8 +171,8 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
     const StampedThermal& frame = views.frames[view * views.frames.size() / count];
     const auto T_world_depth = InterpolatePose(views.trajectory, frame.time);
     if (!T_world_depth) continue;
-    raycaster.Cast(tsdf, camera, *T_world_depth * views.T_thermal_depth.inverse(), kMinWeight, pool,
-                   maps);
+    const RigidTransform T_world_thermal = *T_world_depth * views.T_thermal_depth.inverse();
+    raycaster.Cast(tsdf, camera, InFirstMap(T_world_thermal), kMinWeight, pool, maps);
     const std::uint64_t stream = NoiseStream(1, 0x706f696e7473, view);
     for (std::uint64_t i = 0; i < max_points / count; ++i) {
       const auto x = static_cast<int>(UniformNoise(stream, 2 * i) * maps.width());

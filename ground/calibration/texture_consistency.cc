@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-// Poses further apart are not interpolated between (thermal.expert.max_wait_s).
+// Poses further apart are not interpolated between (thermal.expert.max_depth_gap_s).
 constexpr double kMaxGap_s = 0.12;
 // A point's variance is weighed by this noise, and by half a pixel of misalignment times its
 // gradient: an edge, which half a pixel moves by kelvins, must not count more than a smooth

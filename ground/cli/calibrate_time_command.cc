@@ -14,10 +14,10 @@
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/image_motion.h"
-#include "ground/calibration/scan_views.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/offline/calibration_scan.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
@@ -35,7 +35,7 @@ the calibration's delay agrees with the result (delay_check.expert.max_shift_s),
 --rig names the calibration that the scan was made with. Only --apply changes it: that one number, comments
 and all else stay, and the file as it was is kept beside it (FILE.bak).
 
-Calibrate with the estimator (timestamper.estimator) that scans are made with.
+Calibrate with the estimator (timestamper.expert.estimator) that scans are made with.
 
 Examples:
   isotherm calibrate time scan.mcap

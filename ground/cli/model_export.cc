@@ -48,7 +48,7 @@ Result<ResultSummary> ExportModel(const std::filesystem::path& model_path, Groun
                       .export_options = options.export_(),
                       .interpretation = &interpretation,
                       .stats = stats};
-  if (view) inputs.viewer_world = model->known_poses.back().translation();
+  if (view) inputs.p_map_viewer = model->known_poses.back().translation();
   return WriteResults(inputs, dir, pool, progress);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "common/geometry/map_pose.h"
 #include "ground/export/png_file.h"
 #include "ground/mesh/surface.h"
 #include "ground/renderer/renderer.h"
@@ -101,7 +102,7 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
   ViewMaps view;
   int empty = 0;
   for (const RigidTransform& T_world_camera : request.views) {
-    raycaster.Cast(*model.tsdf, request.camera, T_world_camera,
+    raycaster.Cast(*model.tsdf, request.camera, InFirstMap(T_world_camera),
                    static_cast<float>(options.export_().expert().min_weight()), pool, maps);
     SampleView(maps, T_world_camera.translation(), *model.tsdf, *model.thermal, pool, view);
     empty += std::ranges::all_of(view.cos_view.pixels(), [](float c) { return std::isnan(c); });

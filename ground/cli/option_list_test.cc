@@ -24,20 +24,20 @@ std::string List(std::string_view program, std::string_view stage, bool with_exp
 TEST(OptionListTest, EverydayOptionsComeFirstAndTheOthersWhenAskedFor) {
   const std::string everyday = List("ground", "", false);
   EXPECT_THAT(everyday,
-              AllOf(HasSubstr("\n  tsdf.truncation_distance_m = 0\n      Signed distances"),
+              AllOf(HasSubstr("\n  volume.voxel_size_m = 0.002\n      Edge length of a voxel"),
                     HasSubstr("\n  thermal.distance.good_m = 0.6\n"),
                     HasSubstr("more for experts: --expert\n"), Not(HasSubstr("expert."))));
   const std::string all = List("ground", "", true);
   const std::size_t expert = all.find("tracker.external_odometry.expert.max_gap_s = 0.2\n");
   ASSERT_NE(expert, std::string::npos);
-  EXPECT_LT(all.rfind("  thermal.keep_bad = false\n"), all.find(".expert."));
+  EXPECT_LT(all.rfind("  thermal.distance.good_m = 0.6\n"), all.find(".expert."));
   EXPECT_THAT(all, HasSubstr("  thermal.expert.policy = BEST_CONDITIONS\n"));
 }
 
 TEST(OptionListTest, AStageAndItsExpertBlockCanBeNamed) {
-  const std::string stage = List("ground", "tsdf", false);
-  EXPECT_THAT(stage, AllOf(HasSubstr("tsdf.truncation_distance_m"), Not(HasSubstr("max_weight")),
-                           Not(HasSubstr("\n  volume."))));
+  const std::string stage = List("ground", "volume", false);
+  EXPECT_THAT(stage, AllOf(HasSubstr("volume.spill_dir"), Not(HasSubstr("max_memory_bytes")),
+                           Not(HasSubstr("\n  thermal."))));
   EXPECT_THAT(List("ground", "tsdf", true), HasSubstr("  tsdf.expert.max_weight = 255\n"));
   EXPECT_THAT(List("ground", "thermal.expert.motion", false),
               HasSubstr("  thermal.expert.motion.smear_good_px = 0.5\n"));

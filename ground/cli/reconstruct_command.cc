@@ -20,7 +20,7 @@ frame's optical axis at the median depth. Options come from the defaults, the co
 file, --set and the other options, the later ones winning.
 
 Voxels may be larger for a larger volume: surfaces are then cut off four voxels behind
-(tsdf.truncation_distance_m).
+(tsdf.expert.truncation_distance_m).
 
 DIR gets trajectory.txt, cloud.ply, mesh.ply, renders/*.png, stats.json and model.iso. With
 --continue the volume and `world` are the model's, and the rig is looked for around the poses of the

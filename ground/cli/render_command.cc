@@ -100,7 +100,7 @@ void SetLook(const RenderArguments& arguments, RendererOptions& options, Problem
     problems.Add(ParseIsotherms(arguments.isotherms, options).WithContext("--isotherms"));
   if (!arguments.bands.empty())
     problems.Add(ParseBands(arguments.bands, options).WithContext("--bands"));
-  if (arguments.no_legend) options.set_legend(false);
+  if (arguments.no_legend) options.mutable_expert()->set_legend(false);
   if (arguments.no_shading) options.mutable_expert()->set_shading(false);
 }
 

@@ -20,8 +20,6 @@
 namespace isotherm {
 namespace {
 
-constexpr double kMillimetres = 1e3;
-
 Result<TrajectoryErrors> CompareTrajectory(const EvaluationRequest& request) {
   const std::filesystem::path path = request.result_dir / "trajectory.txt";
   std::error_code error;
@@ -90,7 +88,7 @@ Result<std::vector<CoverageUnderLimits>> CompareCoverage(
   const std::array limits = {*own, kMeasurable, kMeasurableWell};
   ThreadPool pool(kThreads);
   const std::vector<ThermalCoverage> found = EvaluateThermalCoverage(
-      truth, *rig->thermal, T_truth_thermal, limits, assigned, kCoveredWithin_m, pool);
+      truth, {*rig->thermal, T_truth_thermal}, limits, {assigned, kCoveredWithin_m}, pool);
   std::vector<CoverageUnderLimits> result;
   for (std::size_t k = 0; k < limits.size(); ++k) result.push_back({limits[k], found[k]});
   return result;
@@ -209,7 +207,7 @@ std::string CoverageText(const std::vector<CoverageUnderLimits>& coverage) {
   std::string text = fmt::format(
       "coverage (true points that the thermal camera saw at least {} times: with a temperature "
       "within {:g} mm, the nearest one measured well)\n",
-      kMinPoses, kMillimetres * static_cast<double>(kCoveredWithin_m));
+      kMinPoses, kMmPerM * static_cast<double>(kCoveredWithin_m));
   for (const auto& [limits, part] : coverage) {
     text +=
         fmt::format("  {:<26}{:.2f} %, {:.2f} % of {} points\n",
@@ -253,15 +251,15 @@ std::string ToText(const EvaluationReport& report) {
       t.length_m);
   if (t.left_out > 0) text += fmt::format(", {} repeated frames left out", t.left_out);
   if (t.without_truth > 0) text += fmt::format(", {} poses without truth", t.without_truth);
-  text += "\n" + Line("rigidly aligned", t.aligned_m, kMillimetres, "mm");
+  text += "\n" + Line("rigidly aligned", t.aligned_m, kMmPerM, "mm");
   text += Line("", t.aligned_rad, 1.0 / kRadPerDeg, "degrees");
-  text += Line("from the first pose", t.from_first_m, kMillimetres, "mm");
+  text += Line("from the first pose", t.from_first_m, kMmPerM, "mm");
   text += Line("", t.from_first_rad, 1.0 / kRadPerDeg, "degrees");
   if (report.surface) {
     const SurfaceErrors& s = *report.surface;
     text += fmt::format("surface: {} points to the true surface\n", report.cloud_points);
-    text += Line("from the first pose", s.distance_m, kMillimetres, "mm");
-    text += Line("rigidly fitted", s.fitted_distance_m, kMillimetres, "mm");
+    text += Line("from the first pose", s.distance_m, kMmPerM, "mm");
+    text += Line("rigidly fitted", s.fitted_distance_m, kMmPerM, "mm");
     text += fmt::format(
         "  {:<26}{:.2f} % of {} true points seen at least 3 times have a point within 5 mm ({:.2f} "
         "% fitted)\n",

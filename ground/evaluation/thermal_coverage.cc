@@ -117,16 +117,18 @@ class View {
 
 }  // namespace
 
-std::vector<ThermalCoverage> EvaluateThermalCoverage(
-    const TrueSurface& truth, const CameraModel& camera,
-    std::span<const RigidTransform> T_truth_thermal, std::span<const WellSeenLimits> limits,
-    const AssignedPoints& assigned, float radius_m, ThreadPool& pool) {
+std::vector<ThermalCoverage> EvaluateThermalCoverage(const TrueSurface& truth,
+                                                     const ThermalViews& views,
+                                                     std::span<const WellSeenLimits> limits,
+                                                     const CoveringPoints& cloud,
+                                                     ThreadPool& pool) {
   const std::size_t points = truth.points().positions_m.size();
   // Poses that see a point, by limits and then by point.
   std::vector<std::atomic<int>> poses_seeing(limits.size() * points);
-  const Image<Eigen::Vector2f> lines_of_sight = LinesOfSight(camera);
-  pool.ParallelFor(static_cast<int>(T_truth_thermal.size()), [&](int pose) {
-    const View view(truth, camera, lines_of_sight, T_truth_thermal[static_cast<std::size_t>(pose)]);
+  const Image<Eigen::Vector2f> lines_of_sight = LinesOfSight(views.camera);
+  pool.ParallelFor(static_cast<int>(views.T_truth_thermal.size()), [&](int pose) {
+    const View view(truth, views.camera, lines_of_sight,
+                    views.T_truth_thermal[static_cast<std::size_t>(pose)]);
     for (std::size_t k = 0; k < limits.size(); ++k) {
       for (std::size_t i = 0; i < points; ++i) {
         std::atomic<int>& seeing = poses_seeing[k * points + i];
@@ -134,15 +136,15 @@ std::vector<ThermalCoverage> EvaluateThermalCoverage(
       }
     }
   });
-  const PointIndex index(assigned.positions_m);
+  const PointIndex index(cloud.assigned.positions_m);
   std::vector<ThermalCoverage> coverage(limits.size());
   for (std::size_t i = 0; i < points; ++i) {
-    const auto nearest = index.Nearest(truth.points().positions_m[i], radius_m);
+    const auto nearest = index.Nearest(truth.points().positions_m[i], cloud.radius_m);
     for (std::size_t k = 0; k < limits.size(); ++k) {
       if (poses_seeing[k * points + i] < limits[k].min_poses) continue;
       ++coverage[k].well_seen;
       coverage[k].covered += nearest ? 1 : 0;
-      coverage[k].measured_well += nearest && assigned.good[nearest->index] ? 1 : 0;
+      coverage[k].measured_well += nearest && cloud.assigned.good[nearest->index] ? 1 : 0;
     }
   }
   return coverage;

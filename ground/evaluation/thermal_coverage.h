@@ -34,13 +34,24 @@ struct AssignedPoints {
   std::vector<bool> good;  ///< The point is of class good in distance, angle and motion.
 };
 
-/// For each of `limits`. `T_truth_thermal`: true poses of the thermal camera. A true point is seen
-/// by a pose if it projects into the image that `camera` takes, through its lens, and no other part
-/// of the true surface lies before it: the samples' discs are drawn into a depth image at the
-/// camera's resolution. It is covered if a point of `assigned` lies within `radius_m`.
-std::vector<ThermalCoverage> EvaluateThermalCoverage(
-    const TrueSurface& truth, const CameraModel& camera,
-    std::span<const RigidTransform> T_truth_thermal, std::span<const WellSeenLimits> limits,
-    const AssignedPoints& assigned, float radius_m, ThreadPool& pool);
+/// A thermal camera and where it truly was.
+struct ThermalViews {
+  const CameraModel& camera;
+  std::span<const RigidTransform> T_truth_thermal;
+};
+
+/// The points of a cloud, and how far from one of them a true point may be to be covered.
+struct CoveringPoints {
+  const AssignedPoints& assigned;
+  float radius_m;
+};
+
+/// For each of `limits`. A true point is seen by a view if it projects into the image that the
+/// camera takes, through its lens, and no other part of the true surface lies before it: the
+/// samples' discs are drawn into a depth image at the camera's resolution.
+std::vector<ThermalCoverage> EvaluateThermalCoverage(const TrueSurface& truth,
+                                                     const ThermalViews& views,
+                                                     std::span<const WellSeenLimits> limits,
+                                                     const CoveringPoints& cloud, ThreadPool& pool);
 
 }  // namespace isotherm

@@ -30,13 +30,14 @@ class ThermalCoverageTest : public ::testing::Test {
     }
   }
   ThermalCoverage Evaluate(const WellSeenLimits& limits = {}) {
-    return EvaluateThermalCoverage(*truth_, camera_, poses_, {&limits, 1}, assigned_, 0.003F, pool_)
+    return EvaluateThermalCoverage(*truth_, {camera_, poses_}, {&limits, 1}, {assigned_, 0.003F},
+                                   pool_)
         .front();
   }
   std::size_t EvaluateFrom(std::size_t pose) {
     const WellSeenLimits limits;
-    return EvaluateThermalCoverage(*truth_, camera_, {&poses_[pose], 1}, {&limits, 1}, assigned_,
-                                   0.003F, pool_)
+    return EvaluateThermalCoverage(*truth_, {camera_, {&poses_[pose], 1}}, {&limits, 1},
+                                   {assigned_, 0.003F}, pool_)
         .front()
         .well_seen;
   }

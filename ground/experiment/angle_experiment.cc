@@ -62,7 +62,7 @@ GroundOptions WithAngleLimits(bool validation) {
   thermal.mutable_angle()->set_good_deg(30.0);
   thermal.mutable_angle()->set_max_deg(45.0);
   thermal.mutable_expert()->set_validation(validation);
-  thermal.set_keep_bad(!validation);
+  thermal.mutable_expert()->set_keep_bad(!validation);
   return options;
 }
 

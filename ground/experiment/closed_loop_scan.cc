@@ -7,8 +7,8 @@
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_sensor.h"
-#include "ground/guidance/feedback_maker.h"
-#include "ground/guidance/feedback_pace.h"
+#include "ground/feedback/feedback_maker.h"
+#include "ground/feedback/feedback_pace.h"
 #include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
@@ -85,10 +85,10 @@ class ClosedLoop {
     pace_.Add(header, report);
     const std::optional<FeedbackMoment> moment = pace_.Take();
     if (!moment) return;
-    const Feedback feedback = feedback_.Make(*moment, pipeline_->model(), pipeline_->pool());
+    const Feedback feedback = feedback_.Make(*moment, pipeline_->model());
     Note(feedback);
     operator_.Hear(feedback, T_world_depth);
-    feedback_.ThinkAhead(pipeline_->model(), pipeline_->pool());
+    feedback_.ThinkAhead(pipeline_->model());
   }
 
   void Note(const Feedback& feedback) {

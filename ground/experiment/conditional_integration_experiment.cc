@@ -23,7 +23,7 @@ ScanPath Hasty(double distance_m) {
 GroundOptions Conditional(bool conditional) {
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(kVoxel_m);
-  options.mutable_tsdf()->set_truncation_distance_m(0.008);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.008);
   if (!conditional) {
     options.mutable_tsdf()->mutable_expert()->set_max_step_m(0.0);
     options.mutable_tsdf()->mutable_expert()->set_max_step_deg(0.0);

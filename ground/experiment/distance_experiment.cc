@@ -30,13 +30,13 @@ GroundOptions FineModel(bool validation) {
   options.mutable_volume()->set_voxel_size_m(0.0013);  // As in the thesis.
   // Four voxels are less than the noise of the depth camera from far away: bars of 2 mm keep 94.5 %
   // of their contrast with them, 99.2 % with this.
-  options.mutable_tsdf()->set_truncation_distance_m(0.008);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.008);
   ThermalOptions& thermal = *options.mutable_thermal();
   thermal.mutable_distance()->set_min_m(0.30);
   thermal.mutable_distance()->set_good_m(0.45);
   thermal.mutable_distance()->set_max_m(0.60);
   thermal.mutable_expert()->set_validation(validation);
-  thermal.set_keep_bad(!validation);
+  thermal.mutable_expert()->set_keep_bad(!validation);
   return options;
 }
 

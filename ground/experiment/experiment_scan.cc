@@ -116,7 +116,7 @@ Result<std::unique_ptr<GroundPipeline>> StartPipeline(GroundOptions options,
 }
 
 Status CheckTracked(const ScanModel& model) {
-  const PipelineCounts& counts = model.counts;
+  const ScanCounts& counts = model.counts;
   if (counts.depth_tracked == counts.depth_in) return OkStatus();
   return FailedPrecondition(
       fmt::format("the rig was tracked in {} of {} depth frames only: the experiment says nothing",

@@ -93,7 +93,7 @@ void ReadHoles(ThreadPool& pool, ExperimentReport& report) {
 GroundOptions FineModel() {
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(0.0016);
-  options.mutable_tsdf()->set_truncation_distance_m(0.008);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.008);
   ThermalOptions& thermal = *options.mutable_thermal();
   thermal.mutable_distance()->set_min_m(0.35);
   thermal.mutable_distance()->set_good_m(0.65);

@@ -4,7 +4,7 @@
 
 #include "common/simulation/scene.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 

@@ -21,7 +21,6 @@ using Eigen::Vector3d;
 constexpr double kWidth_m = 1.70, kHeight_m = 0.96, kFront_m = 0.80, kDepth_m = 0.96;
 constexpr double kFirst_m = 0.25,
                  kLast_m = 1.45;  ///< The rig looks at these places first and last.
-constexpr double kMmPerM = 1e3;
 // As many scans are merged, with three seeds of noise each.
 constexpr int kParts = 4;
 constexpr std::uint64_t kSeeds = 3;

@@ -99,19 +99,20 @@ ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points) {
 }
 
 ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                     const CameraModel& camera, const RigidTransform& T_world_camera,
+                     const CameraModel& camera, const RigidTransform& T_map_camera,
                      ThreadPool& pool) {
   constexpr float kMinWeight = 1.0F;
   SurfaceMaps maps;
-  Raycaster().Cast(tsdf, camera, T_world_camera, kMinWeight, pool, maps);
+  Raycaster().Cast(tsdf, camera, T_map_camera, kMinWeight, pool, maps);
   ViewMaps view;
-  SampleView(maps, T_world_camera.translation(), tsdf, thermal, pool, view);
+  SampleView(maps, T_map_camera.translation(), tsdf, thermal, pool, view);
   return view;
 }
 
 ViewMaps LookAtModel(const ScanModel& model, const SimulatedScan& scan, CaptureTime time,
                      ThreadPool& pool) {
-  return LookAtModel(model.tsdf(), model.thermal(), *scan.rig().depth, scan.PoseAt(time), pool);
+  return LookAtModel(model.tsdf(), model.thermal(), *scan.rig().depth,
+                     InFirstMap(scan.PoseAt(time)), pool);
 }
 
 RendererOptions FixedScale(double low_celsius, double high_celsius) {

@@ -11,9 +11,9 @@
 #include "common/simulation/simulated_scan.h"
 #include "ground/evaluation/expected_temperature.h"
 #include "ground/mesh/surface.h"
-#include "ground/pipeline/scan_model.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/view_maps.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 
@@ -78,9 +78,9 @@ struct ErrorSummary {
 };
 ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points);
 
-/// Returns what the model shows from `T_world_camera`.
+/// Returns what the model shows from `T_map_camera`.
 ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                     const CameraModel& camera, const RigidTransform& T_world_camera,
+                     const CameraModel& camera, const RigidTransform& T_map_camera,
                      ThreadPool& pool);
 
 /// Returns what the model shows the scan's depth camera from where it truly was at `time`.

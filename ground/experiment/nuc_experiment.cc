@@ -76,7 +76,7 @@ ExperimentReport Describe(const ScanModel& ignored, const ScanModel& respected,
   const double all = CountVoxels(ignored).measured;
   report.table.rows = {DescribeModel("believed", ignored, all),
                        DescribeModel("left out", respected, all)};
-  const PipelineCounts& counts = respected.counts;
+  const ScanCounts& counts = respected.counts;
   const Requirement from_shutter = {"voxels with the shutter's temperature",
                                     report.table.rows[1].values[3], Requirement::Sense::kAtMost,
                                     0.0, ""};

@@ -2,13 +2,13 @@
 
 #include <cmath>
 
+#include "common/base/units.h"
 #include "common/simulation/scene_builder.h"
 #include "ground/experiment/model_check.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kMillimetres = 1e3;
 // The board's plane along z, and ridges of 5 mm on it, 6 mm wide with 6 mm between them: voxels of
 // 1.5 mm keep all of their height, of 4.5 mm 82 % (docs/experiments.md). Beside the ridges the
 // board is flat.
@@ -95,8 +95,8 @@ ReliefCheck MeasureRelief(const SimulatedScan& scan, const ScanModel& model, Thr
     if (from_ridge_m < kMiddle_m) ridges_z.Add(p.z());
     if (from_ridge_m > 0.5 * kPeriod_m - kMiddle_m) grooves_z.Add(p.z());
   }
-  return {100.0 * (grooves_z.value() - ridges_z.value()) / kRelief_m, kMillimetres * flat_m.value(),
-          kMillimetres * scene_m.value(), static_cast<double>(points.size())};
+  return {100.0 * (grooves_z.value() - ridges_z.value()) / kRelief_m, kMmPerM * flat_m.value(),
+          kMmPerM * scene_m.value(), static_cast<double>(points.size())};
 }
 
 }  // namespace isotherm

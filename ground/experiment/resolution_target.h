@@ -6,7 +6,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/simulation/scenes.h"
 #include "common/simulation/simulated_scan.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 

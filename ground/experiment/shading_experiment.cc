@@ -16,7 +16,7 @@ constexpr double kDuration_s = 1.6;
 RendererOptions ScaleFor(double hot_celsius, bool shading) {
   RendererOptions options = FixedScale(20.0, hot_celsius);
   options.mutable_expert()->set_shading(shading);
-  options.set_legend(false);  // The rendering's pixels are the view's.
+  options.mutable_expert()->set_legend(false);  // The rendering's pixels are the view's.
   return options;
 }
 

@@ -8,9 +8,9 @@
 #include "common/frame/frame.h"
 #include "common/rig/rig.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/pipeline_counts.h"
-#include "ground/pipeline/scan_model.h"
 #include "ground/pipeline/thermal_stage.h"
+#include "ground/scan/scan_counts.h"
+#include "ground/scan/scan_model.h"
 #include "ground/thermal/thermal_volume.h"
 
 namespace isotherm {
@@ -47,7 +47,7 @@ class StageFusion {
 
  private:
   const ScanModel model_;
-  PipelineCounts counts_;
+  ScanCounts counts_;
   StageStats timing_;
   ThermalStage stage_;
   ThermalVolume thermal_;

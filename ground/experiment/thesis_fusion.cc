@@ -54,16 +54,15 @@ ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float mi
       nearest_m_(rectifier_.ideal_camera().width, rectifier_.ideal_camera().height),
       vertices_(rig.depth->width, rig.depth->height) {}
 
-ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_world,
-                                         const Eigen::Vector3f& n_world,
-                                         const RigidTransform& T_world_thermal,
+ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_map, const Eigen::Vector3f& n_map,
+                                         const RigidTransform& T_map_thermal,
                                          const OtherRules* rules) const {
-  Vertex vertex{p_world, kNan, ConditionClass::kBad, ConditionClass::kBad};
-  if (!p_world.allFinite() || !n_world.allFinite()) return vertex;
-  const Eigen::Vector3f to_camera = T_world_thermal.translation().cast<float>() - p_world;
+  Vertex vertex{p_map, kNan, ConditionClass::kBad, ConditionClass::kBad};
+  if (!p_map.allFinite() || !n_map.allFinite()) return vertex;
+  const Eigen::Vector3f to_camera = T_map_thermal.translation().cast<float>() - p_map;
   const float distance_m = to_camera.norm();
-  const float cosine = to_camera.dot(n_world) / distance_m;
-  const Eigen::Vector3d p_thermal = T_world_thermal.inverse() * p_world.cast<double>();
+  const float cosine = to_camera.dot(n_map) / distance_m;
+  const Eigen::Vector3d p_thermal = T_map_thermal.inverse() * p_map.cast<double>();
   const auto pixel = Project(rectifier_.ideal_camera(), p_thermal);
   const auto nearest = PixelOf(rectifier_.ideal_camera(), p_thermal);
   if (!pixel || !nearest || cosine <= 0.0F) return vertex;
@@ -77,7 +76,7 @@ ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_world,
   vertex.angle = limits_.ClassifyAngle(std::min(cosine, 1.0F));
   if (rules == nullptr) return vertex;
   const bool bad = vertex.distance == ConditionClass::kBad || vertex.angle == ConditionClass::kBad;
-  if ((bad && !options_.keep_bad()) || IsLeftOut(p_thermal, *nearest, *rules))
+  if ((bad && !options_.expert().keep_bad()) || IsLeftOut(p_thermal, *nearest, *rules))
     vertex.celsius = kNan;
   return vertex;
 }
@@ -135,14 +134,14 @@ void ThesisFuser::FindAssignablePixels(const OtherRules& rules) {
   rules.line_of_sight.LeaveOut(0, pixels_);
 }
 
-void ThesisFuser::FindVertices(const RigidTransform& T_world_thermal, ThreadPool& pool,
+void ThesisFuser::FindVertices(const RigidTransform& T_map_thermal, ThreadPool& pool,
                                const OtherRules* rules) {
-  const RigidTransform T_thermal_world = T_world_thermal.inverse();
+  const RigidTransform T_thermal_map = T_map_thermal.inverse();
   nearest_m_.Fill(std::numeric_limits<float>::max());
   // Algorithm 4, lines 7 to 10.
   for (int y = 0; y < maps_.height(); ++y) {
     for (int x = 0; x < maps_.width(); ++x) {
-      const Eigen::Vector3d p_thermal = T_thermal_world * VertexAt(maps_, x, y).cast<double>();
+      const Eigen::Vector3d p_thermal = T_thermal_map * VertexAt(maps_, x, y).cast<double>();
       if (!p_thermal.allFinite()) continue;
       if (const auto pixel = PixelOf(rectifier_.ideal_camera(), p_thermal)) {
         float& nearest = nearest_m_.At(pixel->x(), pixel->y());
@@ -153,13 +152,13 @@ void ThesisFuser::FindVertices(const RigidTransform& T_world_thermal, ThreadPool
   if (rules != nullptr) FindAssignablePixels(*rules);
   pool.ParallelFor(maps_.height(), [&](int y) {
     for (int x = 0; x < maps_.width(); ++x) {
-      const Eigen::Vector3f n_world(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
-      vertices_.At(x, y) = Measure(VertexAt(maps_, x, y), n_world, T_world_thermal, rules);
+      const Eigen::Vector3f n_map(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
+      vertices_.At(x, y) = Measure(VertexAt(maps_, x, y), n_map, T_map_thermal, rules);
     }
   });
 }
 
-void ThesisFuser::UpdateBlock(std::int32_t block, const RigidTransform& T_depth_world,
+void ThesisFuser::UpdateBlock(std::int32_t block, const RigidTransform& T_depth_map,
                               const TsdfVolume& tsdf, ThermalVolume& thermal) const {
   const VoxelGrid& grid = tsdf.grid();
   const auto reach_m =
@@ -173,12 +172,12 @@ void ThesisFuser::UpdateBlock(std::int32_t block, const RigidTransform& T_depth_
     if (!distances[index].observed() || std::abs(distances[index].tsdf()) > 0.75F) continue;
     const GridIndex offset(i % kBlockSide, i / kBlockSide % kBlockSide,
                            i / (kBlockSide * kBlockSide));
-    const Eigen::Vector3d p_world = grid.VoxelCentre(first + offset);
-    const auto pixel = PixelOf(depth_camera_, T_depth_world * p_world);
+    const Eigen::Vector3d p_map = grid.VoxelCentre(first + offset);
+    const auto pixel = PixelOf(depth_camera_, T_depth_map * p_map);
     if (!pixel) continue;
     const Vertex& vertex = vertices_.At(pixel->x(), pixel->y());
     if (std::isnan(vertex.celsius)) continue;
-    if (!((vertex.p_world - p_world.cast<float>()).norm() < reach_m)) continue;
+    if (!((vertex.p_map - p_map.cast<float>()).norm() < reach_m)) continue;
     const ThermalVoxel measured = ThermalVoxel::Make(vertex.celsius, vertex.distance, vertex.angle);
     if (ReplacesMeasurement(vertex.distance, vertex.angle, ConditionClass::kUnchecked,
                             voxels[index]))
@@ -186,15 +185,14 @@ void ThesisFuser::UpdateBlock(std::int32_t block, const RigidTransform& T_depth_
   }
 }
 
-void ThesisFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-                       const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
-                       ThreadPool& pool, ThermalVolume& thermal, const OtherRules* rules) {
-  raycaster_.Cast(tsdf, depth_camera_, T_world_depth, min_weight_, pool, maps_);
-  rectifier_.Rectify(frame.temperature_raw, frame.scale, 0, pool, celsius_);
-  FindVertices(T_world_thermal, pool, rules);
-  const RigidTransform T_depth_world = T_world_depth.inverse();
+void ThesisFuser::Fuse(const ThesisFrame& posed, const TsdfVolume& tsdf, ThreadPool& pool,
+                       ThermalVolume& thermal) {
+  raycaster_.Cast(tsdf, depth_camera_, posed.T_map_depth, min_weight_, pool, maps_);
+  rectifier_.Rectify(posed.frame.temperature_raw, posed.frame.scale, 0, pool, celsius_);
+  FindVertices(posed.T_map_thermal, pool, posed.rules);
+  const RigidTransform T_depth_map = posed.T_map_depth.inverse();
   pool.ParallelFor(tsdf.block_count(),
-                   [&](int block) { UpdateBlock(block, T_depth_world, tsdf, thermal); });
+                   [&](int block) { UpdateBlock(block, T_depth_map, tsdf, thermal); });
 }
 
 ThesisFusion::ThesisFusion(const GroundOptions& options, const Rig& rig, const ScanModel& model,
@@ -227,16 +225,17 @@ void ThesisFusion::AfterDepth(const Image<float>& depth_m, ThreadPool& pool) {
     const double alpha = ToSeconds(time - before.time) / ToSeconds(after.time - before.time);
     const RigidTransform T_world_depth =
         Interpolate(before.T_world_depth, after.T_world_depth, alpha);
-    const RigidTransform T_world_thermal = T_world_depth * T_depth_thermal;
-    const RigidTransform T_view_thermal = view.T_map_depth.inverse() * T_world_thermal;
+    const RigidTransform T_map_thermal = InFirstMap(T_world_depth) * T_depth_thermal;
+    const RigidTransform T_view_thermal = view.T_map_depth.inverse() * T_map_thermal;
     near_range_.Aim(T_view_thermal);
     line_of_sight_.Aim(T_view_thermal);
     const OtherRules rules{
         MotionBetween(before.T_world_depth * T_depth_thermal, after.T_world_depth * T_depth_thermal,
                       ToSeconds(after.time - before.time)),
         near_range_, line_of_sight_};
-    fuser_.Fuse(frame, T_world_thermal, after.T_world_depth, model_.tsdf(), pool, thermal_,
-                rules_ == Rules::kAlsoOurOthers ? &rules : nullptr);
+    fuser_.Fuse({frame, T_map_thermal, InFirstMap(after.T_world_depth),
+                 rules_ == Rules::kAlsoOurOthers ? &rules : nullptr},
+                model_.tsdf(), pool, thermal_);
   }
 }
 

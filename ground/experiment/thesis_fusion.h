@@ -8,7 +8,7 @@
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/rig/rig.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/camera_motion.h"
 #include "ground/thermal/line_of_sight_occlusion.h"
@@ -36,6 +36,14 @@ struct OtherRules {
   const LineOfSightOcclusion& line_of_sight;  ///< The same.
 };
 
+/// A valid thermal frame and where both cameras were.
+struct ThesisFrame {
+  const ThermalFrame& frame;
+  const RigidTransform& T_map_thermal;
+  const RigidTransform& T_map_depth;
+  const OtherRules* rules = nullptr;  ///< nullptr = only the thesis's own.
+};
+
 /// The thesis's own assignment of temperatures, literally and slowly, to compare with: the model is
 /// cast from the depth camera's pose, filtered (algorithm 4) and each voxel takes the temperature
 /// of its vertex (algorithms 5 and 6). Thread-compatible.
@@ -45,30 +53,27 @@ class ThesisFuser {
   ThesisFuser(const ThermalOptions& options, const Rig& rig, float min_weight,
               ParallaxFilter filter);
 
-  /// `rules`: nullptr = only the thesis's own.
-  void Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-            const RigidTransform& T_world_depth, const TsdfVolume& tsdf, ThreadPool& pool,
-            ThermalVolume& thermal, const OtherRules* rules = nullptr);
+  void Fuse(const ThesisFrame& posed, const TsdfVolume& tsdf, ThreadPool& pool,
+            ThermalVolume& thermal);
 
   const CameraModel& ideal_camera() const { return rectifier_.ideal_camera(); }
 
  private:
   /// A vertex of the depth camera's view and what is measured there.
   struct Vertex {
-    Eigen::Vector3f p_world = Eigen::Vector3f::Zero();
+    Eigen::Vector3f p_map = Eigen::Vector3f::Zero();
     float celsius = 0.0F;  ///< NaN = gets no temperature.
     ConditionClass distance = ConditionClass::kBad;
     ConditionClass angle = ConditionClass::kBad;
   };
-  void FindVertices(const RigidTransform& T_world_thermal, ThreadPool& pool,
-                    const OtherRules* rules);
-  Vertex Measure(const Eigen::Vector3f& p_world, const Eigen::Vector3f& n_world,
-                 const RigidTransform& T_world_thermal, const OtherRules* rules) const;
+  void FindVertices(const RigidTransform& T_map_thermal, ThreadPool& pool, const OtherRules* rules);
+  Vertex Measure(const Eigen::Vector3f& p_map, const Eigen::Vector3f& n_map,
+                 const RigidTransform& T_map_thermal, const OtherRules* rules) const;
   /// Asks the rules that leave out whole pixels of the thermal image (pixels_).
   void FindAssignablePixels(const OtherRules& rules);
   bool IsLeftOut(const Eigen::Vector3d& p_thermal, const Eigen::Vector2i& pixel,
                  const OtherRules& rules) const;
-  void UpdateBlock(std::int32_t block, const RigidTransform& T_depth_world, const TsdfVolume& tsdf,
+  void UpdateBlock(std::int32_t block, const RigidTransform& T_depth_map, const TsdfVolume& tsdf,
                    ThermalVolume& thermal) const;
 
   const ThermalOptions options_;

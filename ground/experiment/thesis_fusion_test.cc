@@ -46,7 +46,7 @@ class ThesisFuserTest : public ::testing::Test {
     frame.valid = true;
     const CameraModel& camera = *rig_.thermal;
     frame.temperature_raw = Image<std::uint16_t>(camera.width, camera.height);
-    const Eigen::Vector3d to_ball = T_world_thermal_.inverse() * kBall;
+    const Eigen::Vector3d to_ball = T_map_thermal_.inverse() * kBall;
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const Eigen::Vector3d ray =
@@ -65,7 +65,7 @@ class ThesisFuserTest : public ::testing::Test {
   };
   Outcome Fuse(ParallaxFilter filter, const OtherRules* rules = nullptr) {
     ThesisFuser(options_, rig_, 0.0F, filter)
-        .Fuse(TakeFrame(), T_world_thermal_, T_world_depth_, *tsdf_, pool_, *thermal_, rules);
+        .Fuse({TakeFrame(), T_map_thermal_, T_map_depth_, rules}, *tsdf_, pool_, *thermal_);
     Outcome outcome;
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
@@ -83,9 +83,8 @@ class ThesisFuserTest : public ::testing::Test {
   static constexpr double kRadius = 0.06, kWall = 0.60;
   ThermalOptions options_;
   Rig rig_;
-  RigidTransform T_world_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
-  RigidTransform T_world_thermal_ =
-      MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
+  RigidTransform T_map_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
+  RigidTransform T_map_thermal_ = MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
   ThreadPool pool_{2};
   std::unique_ptr<TsdfVolume> tsdf_;
   std::unique_ptr<ThermalVolume> thermal_;

@@ -18,8 +18,6 @@
 namespace isotherm {
 namespace {
 
-constexpr double kMillimetres = 1e3;
-
 // Appendix F: a rig at thesis speed, and a point a metre away.
 constexpr double kSpeed_m_s = 0.3, kRotation_rad_s = 18.0 * kRadPerDeg;
 constexpr double kFrame_s = 1.0 / 30.0, kPoint_m = 1.0;
@@ -72,17 +70,16 @@ struct Analysis {
 Analysis Analyse(ExperimentReport& report) {
   Analysis analysis;
   const auto add = [&](const std::string& what, double offset_m, double thesis_mm) {
-    report.table.rows.push_back({what, {kMillimetres * offset_m, thesis_mm, NAN}});
+    report.table.rows.push_back({what, {kMmPerM * offset_m, thesis_mm, NAN}});
     analysis.off_thesis_mm =
-        std::max(analysis.off_thesis_mm, std::abs(kMillimetres * offset_m - thesis_mm));
+        std::max(analysis.off_thesis_mm, std::abs(kMmPerM * offset_m - thesis_mm));
   };
   for (const auto& [radius_m, speed_m_s, thesis_mm] :
        {std::tuple(1.0, 0.3, 0.01), std::tuple(0.5, 0.3, 0.02), std::tuple(1.0, 0.6, 0.05)}) {
     const double offset_m = ArcOffset(radius_m, speed_m_s);
     add(fmt::format("interpolation on an arc of {:.1f} m, {:.1f} m/s", radius_m, speed_m_s),
         offset_m, thesis_mm);
-    if (speed_m_s == kSpeed_m_s)
-      analysis.arc_mm = std::max(analysis.arc_mm, kMillimetres * offset_m);
+    if (speed_m_s == kSpeed_m_s) analysis.arc_mm = std::max(analysis.arc_mm, kMmPerM * offset_m);
   }
   // In the middle between two frames interpolation is worst.
   constexpr double kRight_s = 0.5 * kFrame_s;
@@ -94,7 +91,7 @@ Analysis Analyse(ExperimentReport& report) {
   add("pose 10 % off, 0.3 m/s", OffsetOfPoint(&Moving, kFrame_s, kFrame_s, kPoseErrorRatio), 1.0);
   add("pose 10 % off, 18 degrees/s", OffsetOfPoint(&Turning, kFrame_s, kFrame_s, kPoseErrorRatio),
       1.0);
-  analysis.time_error_mm = kMillimetres * moved_m;
+  analysis.time_error_mm = kMmPerM * moved_m;
   return analysis;
 }
 
@@ -217,11 +214,11 @@ Result<Passing> PassBars(const std::vector<double>& time_errors_s, ThreadPool& p
   const CaptureTime from = start + FromSeconds(kPassing_s), to = start + FromSeconds(kDuration_s);
   passing.speed_m_s =
       TranslationDistance((*scan)->PoseAt(from), (*scan)->PoseAt(to)) / (kDuration_s - kPassing_s);
-  passing.pose_error_mm = kMillimetres * pose_errors_m / poses;
+  passing.pose_error_mm = kMmPerM * pose_errors_m / poses;
   for (const auto& pipeline : pipelines) {
     pipeline->Finish();
     if (Status status = CheckTracked(pipeline->model()); !status.ok()) return Err(status);
-    passing.offsets_mm.push_back(kMillimetres * MeasureOffset(**scan, pipeline->model(), pool));
+    passing.offsets_mm.push_back(kMmPerM * MeasureOffset(**scan, pipeline->model(), pool));
   }
   return passing;
 }
@@ -242,7 +239,7 @@ Result<ExperimentReport> RunTimingExperiment(ThreadPool& pool) {
   for (std::size_t i = 0; i < time_errors_s.size(); ++i) {
     // A frame that says it is late is taken for one from where the rig was later.
     const double expected_mm =
-        passing->pose_error_mm + kMillimetres * passing->speed_m_s * time_errors_s[i];
+        passing->pose_error_mm + kMmPerM * passing->speed_m_s * time_errors_s[i];
     const double off_mm = std::abs(passing->offsets_mm[i] - expected_mm);
     if (!(off_mm <= off_closed_form_mm)) off_closed_form_mm = off_mm;  // NaN is not met.
     report.table.rows.push_back({fmt::format("time {:+.0f} ms, {:.2f} m/s, bars in the model",

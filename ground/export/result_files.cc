@@ -95,7 +95,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
   std::error_code ignored;  // A folder that is not there shows when files cannot be written.
   fs::create_directories(folder, ignored);
   ViewMaps view;
-  SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
+  SampleView(*inputs.view, inputs.p_map_viewer, inputs.tsdf, inputs.thermal, threads, view);
   SampleRecords(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
   if (inputs.interpretation != nullptr) {
     inputs.interpretation->Apply(*inputs.view, view);
@@ -212,7 +212,7 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
     Surface surface =
         ExtractSurface(inputs.tsdf, inputs.thermal,
                        {.min_weight = static_cast<float>(options.expert().min_weight()),
-                        .triangles = options.mesh()},
+                        .triangles = options.expert().mesh()},
                        threads);
     std::vector<PartReport> reports;
     // Before the summary, which must describe the temperatures that are written.
@@ -227,16 +227,16 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
                          .palette_name = PaletteName(inputs.renderer_options.palette()),
                          .software = kSoftware,
                          .interpreted = inputs.interpretation != nullptr};
-    if (options.cloud()) {
+    if (options.expert().cloud()) {
       announce("cloud.ply", 0.4);
       failure.Add(WriteCloudPly(surface, style, dir / "cloud.ply"));
     }
-    if (options.mesh()) {
+    if (options.expert().mesh()) {
       announce("mesh.ply", 0.65);
       failure.Add(WriteMeshPly(surface, style, dir / "mesh.ply"));
     }
   }  // Renderings need the memory that the surface took.
-  if (options.renders() && inputs.view != nullptr) {
+  if (options.expert().renders() && inputs.view != nullptr) {
     announce("renders", 0.9);
     WriteRenders(inputs, summary.scale, dir / "renders", threads, failure);
   }

@@ -46,9 +46,9 @@ struct ResultInputs {
   const TsdfVolume& tsdf;
   const ThermalVolume& thermal;
   std::optional<std::span<const StampedPose>> trajectory;  ///< nullopt: no trajectory.txt.
-  /// Shows the model as it looks from `viewer_world`, ray-cast, in `world`; nullptr: no renderings.
+  /// Shows the model as it looks from `p_map_viewer`, ray-cast, in `map`; nullptr: no renderings.
   const SurfaceMaps* view = nullptr;
-  Eigen::Vector3d viewer_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_map_viewer = Eigen::Vector3d::Zero();
   const RendererOptions& renderer_options;
   const ThermalOptions& thermal_options;
   const ExportOptions& export_options;

@@ -65,7 +65,7 @@ class ResultsTest : public ::testing::Test {
                         .thermal = thermal_,
                         .trajectory = poses_,
                         .view = &view_,
-                        .viewer_world = {0.06, 0.05, -0.5},
+                        .p_map_viewer = {0.06, 0.05, -0.5},
                         .renderer_options = renderer_,
                         .thermal_options = thermal_options_,
                         .export_options = export_,
@@ -129,9 +129,9 @@ TEST_F(ResultsTest, SameInputsGiveTheSameBytesWhateverTheThreads) {
 }
 
 TEST_F(ResultsTest, OptionsLeaveFilesOut) {
-  export_.set_mesh(false);
-  export_.set_cloud(false);
-  export_.set_renders(false);
+  export_.mutable_expert()->set_mesh(false);
+  export_.mutable_expert()->set_cloud(false);
+  export_.mutable_expert()->set_renders(false);
   ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
   ASSERT_TRUE(Write(folder_.path()));
   EXPECT_FALSE(fs::exists(folder_.path() / "mesh.ply"));
@@ -219,7 +219,7 @@ TEST_F(ResultsTest, InterpretedResultsKeepWhatWasMeasured) {
 }
 
 TEST_F(ResultsTest, RenderingsAreInterpretedToo) {
-  renderer_.set_legend(false);
+  renderer_.mutable_expert()->set_legend(false);
   ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
   renderer_.set_scale(FIXED);
   ThreadPool pool(1);

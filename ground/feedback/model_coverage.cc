@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "ground/tsdf/voxel_layout.h"
+
 namespace isotherm {
 namespace {
 
@@ -59,7 +61,7 @@ class PairReader {
   float Distance(const Place& place) const {
     if (place.block == TsdfVolume::kNoBlock) return NAN;
     const TsdfVoxel voxel = tsdf_.voxels(place.block)[static_cast<std::size_t>(place.local)];
-    return (voxel.bits & 0xFFFFU) >= min_weight_ ? voxel.tsdf() : NAN;
+    return TsdfLayout::WeightCode(voxel.bits) >= min_weight_ ? voxel.tsdf() : NAN;
   }
   ThermalVoxel Thermal(const Place& place) const {
     return thermal_.voxels(place.block)[static_cast<std::size_t>(place.local)];

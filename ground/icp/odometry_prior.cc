@@ -39,7 +39,7 @@ std::optional<OdometryPrior::Prediction> OdometryPrior::Predict(const StampedMap
                                                                 const RigidTransform& inertial,
                                                                 const PriorError& inertial_error) {
   predicted_.reset();
-  if (!options_.enabled() || stream_.counts().accepted == 0) return std::nullopt;
+  if (!options_.expert().enabled() || stream_.counts().accepted == 0) return std::nullopt;
   if (!trusted_) {
     ++counts_.distrusted;
     return std::nullopt;
@@ -109,7 +109,7 @@ void OdometryPrior::Note(const TrackingResult& result, CaptureTime time, const M
                          bool used) {
   used_ = used ? predicted_ : std::nullopt;
   if (used) ++counts_.used;
-  if (!options_.enabled() || stream_.counts().accepted == 0) return;
+  if (!options_.expert().enabled() || stream_.counts().accepted == 0) return;
   const bool contradicts = Contradicts(result, time, known);
   const bool compared = !anchors_.empty() && result.motion.measured &&
                         result.motion.unobservable_axes < 6 && stream_.At(time).has_value();

@@ -107,7 +107,7 @@ TEST_F(OdometryPriorTest, NothingIsPredictedWithoutASourceOrWhereItHasAGap) {
 }
 
 TEST_F(OdometryPriorTest, SwitchedOffItIsOnlyCounted) {
-  options_.set_enabled(false);
+  options_.mutable_expert()->set_enabled(false);
   Restart();
   Feed(0.0, 0.5, True);
   EXPECT_FALSE(Predict(True(0.3), 0.3, 0.33).has_value());

@@ -70,7 +70,9 @@ Status Validate(const ExternalOdometryExpertOptions& o) {
 }
 
 OdometryStream::OdometryStream(const ExternalOdometryOptions& options)
-    : options_(options), T_body_depth_(RigidTransform::Identity()), source_(options.source()) {
+    : options_(options),
+      T_body_depth_(RigidTransform::Identity()),
+      source_(options.expert().source()) {
   if (!options.has_t_depth_body()) return;
   T_body_depth_ = ToTransform(options.t_depth_body())->inverse();
 }

@@ -74,8 +74,10 @@ ThermalAlignment::ThermalAlignment(const CameraModel& thermal_camera,
       for (int i = 0; i < kCellPixels; ++i) {
         const Eigen::Vector2d pixel(u * kCell + i % kCell, v * kCell + i / kCell);
         const Eigen::Vector2d source = ProjectNormalized(thermal_camera, Unproject(ideal, pixel));
-        const int x = std::clamp(static_cast<int>(source.x() + 0.5), 0, thermal_camera.width - 1);
-        const int y = std::clamp(static_cast<int>(source.y() + 0.5), 0, thermal_camera.height - 1);
+        const int x =
+            std::clamp(static_cast<int>(std::lround(source.x())), 0, thermal_camera.width - 1);
+        const int y =
+            std::clamp(static_cast<int>(std::lround(source.y())), 0, thermal_camera.height - 1);
         // The nearest pixel, not interpolated: the mean over sixteen of them averages the rounding
         // out.
         source_.push_back(y * thermal_camera.width + x);
@@ -197,14 +199,14 @@ ThermalAlignment::Sums ThermalAlignment::Accumulate(const RigidTransform& T_map_
     residuals_.push_back(residual);
     if (std::abs(residual - last.median_k) > limit_k) continue;
     const Eigen::Vector3d arm = before.p_map - T_map_depth.translation();
-    Vector6 J_before;
-    J_before << before.gradient, arm.cross(before.gradient);
-    Vector6 J_now;
-    J_now << now->gradient, arm.cross(now->gradient);
+    Vector6 jacobian_before;
+    jacobian_before << before.gradient, arm.cross(before.gradient);
+    Vector6 jacobian_now;
+    jacobian_now << now->gradient, arm.cross(now->gradient);
     // As in Observability: two gradients with independent noise, so that noise alone does not look
     // like a pattern.
-    const Vector6 j_before = to_axes * J_before;
-    const Vector6 j_now = to_axes * J_now;
+    const Vector6 j_before = to_axes * jacobian_before;
+    const Vector6 j_now = to_axes * jacobian_now;
     products += j_before * j_now.transpose();
     with_residual += 0.5 * residual * (j_before + j_now);
     sum_before += j_before;

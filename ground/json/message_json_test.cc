@@ -17,7 +17,7 @@ namespace {
 TEST(MessageJsonTest, DefaultsEnumsAndNumbersAreWhatAReaderExpects) {
   GroundOptions options;
   options.set_threads(3);
-  options.mutable_volume()->set_max_memory_bytes(1LL << 40);
+  options.mutable_volume()->mutable_expert()->set_max_memory_bytes(1LL << 40);
   options.mutable_renderer()->set_scale(FIXED);
   const Json json = ToJson(options);
   EXPECT_EQ(json.at("threads"), 3);
@@ -25,13 +25,14 @@ TEST(MessageJsonTest, DefaultsEnumsAndNumbersAreWhatAReaderExpects) {
   EXPECT_EQ(json.at("renderer").at("scale"), "FIXED");
   // Of a stage that nobody has touched.
   EXPECT_EQ(json.at("tsdf").at("truncation_distance_m"),
-            TsdfOptions::default_instance().truncation_distance_m());
+            TsdfOptions::default_instance().expert().truncation_distance_m());
 }
 
 TEST(MessageJsonTest, OptionsReadBackAsTheyWere) {
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(0.1 + 0.2);
-  options.mutable_tracker()->mutable_external_odometry()->set_source("0 0 \"1\"\n\t\\ 0");
+  options.mutable_tracker()->mutable_external_odometry()->mutable_expert()->set_source(
+      "0 0 \"1\"\n\t\\ 0");
   *options.mutable_volume()->mutable_expert()->mutable_initial_pose() =
       ToOptions(MakeTransform({0.1, 0.2, 1.0 / 3.0}, Eigen::Quaterniond(0.6, 0.8, 0, 0)));
   options.mutable_thermal()->mutable_expert()->set_max_footprint_m(

@@ -18,7 +18,7 @@ Result<LoadedModel> LoadModel(const std::filesystem::path& path, GroundOptions& 
   LoadedModel model;
   model.rig = (*file)->rig();
   model.known_poses = (*file)->known_poses();
-  model.tsdf = std::make_unique<TsdfVolume>(*grid, options.tsdf().truncation_distance_m(),
+  model.tsdf = std::make_unique<TsdfVolume>(*grid, options.tsdf().expert().truncation_distance_m(),
                                             max_blocks, spill_dir);
   model.thermal = std::make_unique<ThermalVolume>(max_blocks, spill_dir);
   if (!model.thermal->Commit(std::min(max_blocks, (*file)->block_count())))

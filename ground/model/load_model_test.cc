@@ -74,10 +74,10 @@ TEST_F(LoadModelTest, AModelWithoutThermalCameraHasNone) {
 TEST_F(LoadModelTest, TooLittleMemoryIsSaidWithTheOption) {
   Save();
   GroundOptions options;
-  options.mutable_volume()->set_max_memory_bytes(100'000);
+  options.mutable_volume()->mutable_expert()->set_max_memory_bytes(100'000);
   const Result<LoadedModel> model = LoadModel(Path(), options);
   ASSERT_FALSE(model);
-  EXPECT_NE(model.error().message().find("volume.max_memory_bytes"), std::string::npos)
+  EXPECT_NE(model.error().message().find("volume.expert.max_memory_bytes"), std::string::npos)
       << model.error().message();
 }
 

@@ -224,7 +224,7 @@ Status ModelFile::Content::CheckVolume() const {
   volume.set_size_y_m(header.voxel_size_m());
   volume.set_size_z_m(header.voxel_size_m());
   TsdfOptions tsdf;
-  tsdf.set_truncation_distance_m(header.truncation_distance_m());
+  tsdf.mutable_expert()->set_truncation_distance_m(header.truncation_distance_m());
   if (header.truncation_distance_m() == 0.0) return Damaged("its truncation distance is 0 m");
   for (const Status& status : {Validate(volume), Validate(tsdf, volume)}) {
     if (!status.ok()) return Damaged("its volume makes no sense: " + status.message());
@@ -288,9 +288,9 @@ Status ModelFile::AdoptVolume(GroundOptions& options) const {
   };
   if (volume.has_voxel_size_m() && differs(volume.voxel_size_m(), header.voxel_size_m()))
     return refuse("volume.voxel_size_m", volume.voxel_size_m(), header.voxel_size_m());
-  if (tsdf.truncation_distance_m() != 0.0 &&
-      differs(tsdf.truncation_distance_m(), header.truncation_distance_m())) {
-    return refuse("tsdf.truncation_distance_m", tsdf.truncation_distance_m(),
+  const double truncation_m = tsdf.expert().truncation_distance_m();
+  if (truncation_m != 0.0 && differs(truncation_m, header.truncation_distance_m())) {
+    return refuse("tsdf.expert.truncation_distance_m", truncation_m,
                   header.truncation_distance_m());
   }
   const double block_m = header.voxel_size_m() * kBlockSide;
@@ -301,7 +301,7 @@ Status ModelFile::AdoptVolume(GroundOptions& options) const {
   volume.mutable_expert()->set_min_x_m(header.min_x_m());
   volume.mutable_expert()->set_min_y_m(header.min_y_m());
   volume.mutable_expert()->set_min_z_m(header.min_z_m());
-  tsdf.set_truncation_distance_m(header.truncation_distance_m());
+  tsdf.mutable_expert()->set_truncation_distance_m(header.truncation_distance_m());
   return OkStatus();
 }
 
@@ -343,7 +343,7 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
       const std::int32_t block = tsdf.FindOrAllocate(coordinates);
       if (block == TsdfVolume::kNoBlock) {
         return ResourceExhausted(content.name +
-                                 ": the model needs more than volume.max_memory_bytes");
+                                 ": the model needs more than volume.expert.max_memory_bytes");
       }
       std::memcpy(tsdf.voxels(block).data(), in + kCoordinateBytes, kVoxelBytes);
       std::memcpy(thermal.voxels(block).data(), in + kCoordinateBytes + kVoxelBytes, kVoxelBytes);

@@ -33,7 +33,7 @@ class ModelFileTest : public ::testing::Test {
     options_.mutable_volume()->set_size_z_m(0.32);
     options_.mutable_volume()->mutable_expert()->set_min_z_m(-0.1);
     options_.mutable_volume()->set_voxel_size_m(0.004);
-    options_.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
     rig_.depth = CameraModel{640, 480, 575.0, 576.0, 320.0, 240.0};
     rig_.thermal = CameraModel{382, 288, 550.0, 551.0, 190.0, 144.0, -0.2};
     rig_.T_thermal_depth = MakeTransform({0.07, 0.0, 0.0}, Eigen::Quaterniond::Identity());
@@ -56,7 +56,8 @@ class ModelFileTest : public ::testing::Test {
                    std::unique_ptr<ThermalVolume>& thermal) {
     const VoxelGrid grid = MakeVoxelGrid(options.volume()).value();
     const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
-    tsdf = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
+    tsdf = std::make_unique<TsdfVolume>(grid, options.tsdf().expert().truncation_distance_m(),
+                                        max_blocks);
     thermal = std::make_unique<ThermalVolume>(max_blocks);
   }
   std::filesystem::path Path() const { return folder_.path() / "model.iso"; }

@@ -5,15 +5,13 @@
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/geometry/map_pose.h"
 #include "ground/thermal/condition_record.h"
 #include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
-HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool)
-    : scan_(scan),
-      options_(options),
-      pool_(pool),
-      rectifier_(*scan.rig.thermal, options.scene_influence) {}
+HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options)
+    : scan_(scan), options_(options), rectifier_(*scan.rig.thermal, options.scene_influence) {}
 
 std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
   const std::vector<StampedPose>& poses = scan_.trajectory.poses();
@@ -44,10 +42,11 @@ void HeldOutViews::Compare(const ThermalFrame& frame) {
   }
   ++report_.frames;
   const RigidTransform T_world_thermal = *T_world_depth * scan_.rig.T_thermal_depth->inverse();
-  rectifier_.Rectify(frame.temperature_raw, frame.scale, /*apron=*/0, pool_, celsius_);
-  raycaster_.Cast(scan_.tsdf(), rectifier_.ideal_camera(), T_world_thermal, options_.min_weight,
-                  pool_, maps_);
-  SampleView(maps_, T_world_thermal.translation(), scan_.tsdf(), scan_.thermal(), pool_, view_);
+  rectifier_.Rectify(frame.temperature_raw, frame.scale, /*apron=*/0, scan_.pool, celsius_);
+  raycaster_.Cast(scan_.tsdf(), rectifier_.ideal_camera(), InFirstMap(T_world_thermal),
+                  options_.min_weight, scan_.pool, maps_);
+  SampleView(maps_, T_world_thermal.translation(), scan_.tsdf(), scan_.thermal(), scan_.pool,
+             view_);
   for (int y = 0; y < celsius_.height(); ++y) {
     for (int x = 0; x < celsius_.width(); ++x) {
       const float shown = celsius_.At(x, y);

@@ -2,13 +2,12 @@
 
 #include <optional>
 
-#include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/frame/image.h"
 #include "common/radiometry/smooth_surface.h"
 #include "ground/offline/held_out_report.h"
-#include "ground/pipeline/scan_model.h"
 #include "ground/renderer/view_maps.h"
+#include "ground/scan/scan_model.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_rectifier.h"
 #include "ground/thermal/thermal_volume.h"
@@ -31,7 +30,7 @@ struct HeldOutOptions {
 class HeldOutViews {
  public:
   /// The pipeline of `scan` must outlive it. CheckThermalFusion(scan.rig) is ok.
-  HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool);
+  HeldOutViews(const ScanModel& scan, const HeldOutOptions& options);
 
   /// `frame` is valid (CHECK).
   void Compare(const ThermalFrame& frame);
@@ -47,7 +46,6 @@ class HeldOutViews {
   const ScanModel scan_;
   const HeldOutOptions options_;
   const BandRadiance band_;
-  ThreadPool& pool_;
   ThermalRectifier rectifier_;
   Raycaster raycaster_;
   SurfaceMaps maps_;

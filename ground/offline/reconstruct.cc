@@ -17,24 +17,33 @@
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/export/result_files.h"
+#include "ground/offline/finishing_pass.h"
 #include "ground/offline/held_out_views.h"
+#include "ground/offline/recorded_frames.h"
 #include "ground/pipeline/ground_pipeline.h"
-#include "ground/pipeline/pipeline_counts.h"
 #include "ground/results/scan_result.h"
+#include "ground/scan/scan_counts.h"
 #include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {
 
-/// Fraction of the progress that the frames take; the rest is writing results.
-constexpr double kFramesFraction = 0.85;
-constexpr double kMergeFraction = 0.05, kDelayFraction = 0.05;
+/// Fractions of the progress; the rest is writing results.
+constexpr double kFramesFraction = 0.60, kMergeFraction = 0.05, kFinishingFraction = 0.25;
+constexpr double kDelayFraction = 0.05;
+/// Where both passes end.
+constexpr double kPassesFraction = kFramesFraction + kMergeFraction + kFinishingFraction;
 
 /// In the frames' stamps when they have reached the pipeline; nullopt if that is not known.
 std::optional<double> CalibratedDelay(const RecordingInfo& info, const Rig& rig) {
   const std::optional<double> applied_s = AppliedDelay(info);
   if (!applied_s) return std::nullopt;
   return *applied_s + rig.thermal_delay_s;
+}
+
+/// A calibration from elsewhere may be given because the recorded scale is wrong.
+std::optional<double> DepthScale(const ReconstructRequest& request) {
+  return request.rig ? std::optional(request.rig->depth_scale) : std::nullopt;
 }
 
 /// Frames of a recording, decoded and fed through the assembler into the pipeline.
@@ -78,14 +87,13 @@ class InlineDriver {
       if (request_.progress)
         request_.progress(kFramesFraction + kMergeFraction * fraction, "putting sub-maps together");
     });
-    return OkStatus();
+    return FinishTemperatures();
   }
 
   DelayReport CheckDelay() {
-    return delay_check_.Finish(pipeline_.model(), pipeline_.pool(), [this](double fraction) {
+    return delay_check_.Finish(pipeline_.model(), [this](double fraction) {
       if (request_.progress)
-        request_.progress(kFramesFraction + kMergeFraction + kDelayFraction * fraction,
-                          "checking the delay");
+        request_.progress(kPassesFraction + kDelayFraction * fraction, "checking the delay");
     });
   }
 
@@ -98,40 +106,28 @@ class InlineDriver {
 
  private:
   void Take(RecordedDepth& recorded) {
-    auto frame = std::make_shared<DepthFrame>();
-    frame->header = recorded.frame.header;
-    // A calibration from elsewhere may be given because the recorded scale is wrong.
-    frame->depth_scale = request_.rig ? request_.rig->depth_scale : recorded.frame.depth_scale;
-    const bool look = plausibility_.AddDepth(frame->header.capture_time);
-    if (!Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw)) {
+    const bool look = plausibility_.AddDepth(recorded.frame.header.capture_time);
+    Result<DepthFramePtr> frame = Unpack(recorded, DepthScale(request_));
+    if (!frame) {
+      LOG(Reconstruct, Warning) << frame.error().message();
       ++undecodable_depth_;
       return;
     }
-    if (look) plausibility_.LookAtDepth(frame->depth_raw, frame->depth_scale);
-    assembler_.Add(std::move(frame));
+    if (look) plausibility_.LookAtDepth((*frame)->depth_raw, (*frame)->depth_scale);
+    assembler_.Add(std::move(*frame));
   }
 
   void Take(RecordedThermal& recorded) {
-    auto frame = std::make_shared<ThermalFrame>();
-    const EncodedThermalFrame& encoded = recorded.frame;
-    frame->header = encoded.header;
-    const bool look = plausibility_.AddThermal(frame->header.capture_time);
-    // Behind the plausibility check, which looks at the stamps as they were recorded.
-    frame->header.capture_time += thermal_delay_;
-    frame->nuc_state = encoded.nuc_state;
-    frame->nuc_source = encoded.nuc_source;
-    frame->seconds_since_nuc = encoded.seconds_since_nuc;
-    frame->housekeeping = encoded.housekeeping;
-    frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
-    frame->scale = encoded.scale;
-    if (!Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header,
-                frame->temperature_raw)) {
+    const bool look = plausibility_.AddThermal(recorded.frame.header.capture_time);
+    Result<ThermalFramePtr> frame = Unpack(recorded, thermal_delay_);
+    if (!frame) {
+      LOG(Reconstruct, Warning) << frame.error().message();
       ++undecodable_thermal_;
       return;
     }
-    if (look && !frame->temperature_raw.empty())
-      plausibility_.LookAtThermal(frame->temperature_raw, frame->scale);
-    assembler_.Add(std::move(frame));
+    if (look && !(*frame)->temperature_raw.empty())
+      plausibility_.LookAtThermal((*frame)->temperature_raw, (*frame)->scale);
+    assembler_.Add(std::move(*frame));
   }
 
   void Take(const ClockStep& /*step*/) {}  // Capture times do not follow the wall clock.
@@ -139,17 +135,6 @@ class InlineDriver {
   void Take(const RecordedPose& /*pose*/) {}
   void Take(const RecordedLog& /*log*/) {}
   void Take(const ExternalOdometry& pose) { pipeline_.ProcessExternalOdometry(pose); }
-
-  static bool Unpack(Result<Image<std::uint16_t>> decoded, const char* stream,
-                     const FrameHeader& header, Image<std::uint16_t>& image) {
-    if (decoded) {
-      image = std::move(*decoded);
-      return true;
-    }
-    LOG(Reconstruct, Warning) << stream << " frame " << header.frame_number
-                              << " left out: " << decoded.error().message();
-    return false;
-  }
 
   void Process(const Assembler::Frame& frame) {
     if (const auto* depth = std::get_if<DepthFramePtr>(&frame)) {
@@ -168,6 +153,19 @@ class InlineDriver {
 
   bool IsHeldOut(const ThermalFrame& frame) {
     return hold_out_every_ > 0 && frame.valid && ++valid_thermal_ % hold_out_every_ == 0;
+  }
+
+  Status FinishTemperatures() {
+    if (!request_.options.thermal().expert().finishing_pass()) return OkStatus();
+    const std::unique_ptr<ThermalPass> pass = pipeline_.BeginThermalPass();
+    if (pass == nullptr) return OkStatus();
+    return FuseOnFinishedSurface(
+        {request_.recording, DepthScale(request_), thermal_delay_, held_out_}, *pass,
+        [this](double fraction) {
+          if (request_.progress)
+            request_.progress(kFramesFraction + kMergeFraction + kFinishingFraction * fraction,
+                              "assigning temperatures to the finished surface");
+        });
   }
 
   void Report() const {
@@ -298,9 +296,8 @@ Status CompareHeldOut(const ReconstructRequest& request, const Rig& rig,
     views.Compare(frame);
     ++read;
     if (request.progress) {
-      constexpr double kBefore = kFramesFraction + kMergeFraction;
-      request.progress(kBefore + (1.0 - kBefore) * static_cast<double>(read) /
-                                     static_cast<double>(stamps.size()),
+      request.progress(kPassesFraction + (1.0 - kPassesFraction) * static_cast<double>(read) /
+                                             static_cast<double>(stamps.size()),
                        "predicting");
     }
   }
@@ -330,14 +327,13 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   stats["elapsed_s"] = elapsed.count();
   stats["processor"] = DescribeProcessor(used, pipeline.model().trajectory);
   const auto progress = [&](std::string_view what, double fraction) {
-    constexpr double kBefore = kFramesFraction + kMergeFraction + kDelayFraction;
+    constexpr double kBefore = kPassesFraction + kDelayFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);
   };
-  Result<WrittenScan> written =
-      WriteScan(pipeline.model(), options, delay, driver.FindDoubts(), std::move(stats),
-                request.output_dir, pipeline.pool(), progress);
+  Result<WrittenScan> written = WriteScan(
+      pipeline.model(), options, {delay, driver.FindDoubts(), stats}, request.output_dir, progress);
   if (!written) return Err(written.error());
-  const PipelineCounts& counts = pipeline.model().counts;
+  const ScanCounts& counts = pipeline.model().counts;
   return ReconstructSummary{
       counts.depth_in,      counts.depth_repeated,    counts.depth_tracked,      counts.thermal_in,
       counts.thermal_fused, std::move(written->text), std::move(written->doubts)};
@@ -365,11 +361,11 @@ Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int
                     request.recording.string(), every)));
   }
   const HeldOutOptions options{
-      .max_gap_s = scan->options.thermal().expert().max_wait_s(),
+      .max_gap_s = scan->options.thermal().expert().max_depth_gap_s(),
       .min_weight = static_cast<float>(scan->options.export_().expert().min_weight()),
       .surface = surface,
       .scene_influence = CorrectedInfluence(scan->options.thermal(), scan->rig->thermal_sensor)};
-  HeldOutViews views(scan->pipeline->model(), options, scan->pipeline->pool());
+  HeldOutViews views(scan->pipeline->model(), options);
   if (Status status = CompareHeldOut(request, *scan->rig, driver.held_out(), views); !status.ok()) {
     return Err(status);
   }

@@ -5,9 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/base/log.h"
+#include "common/base/stage_timer.h"
+#include "ground/model/saved_model.h"
 #include "ground/options/option_geometry.h"
-#include "ground/pipeline/saved_model.h"
 #include "ground/thermal/thermal_options.h"
 #include "ground/tsdf/growing_arena.h"
 
@@ -18,6 +20,8 @@ int ThreadCount(const GroundOptions& options) {
   if (options.threads() > 0) return options.threads();
   return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
+
+const StageStats* IfCalled(const StageStats& stats) { return stats.count() > 0 ? &stats : nullptr; }
 
 }  // namespace
 
@@ -66,15 +70,18 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       pool_(ThreadCount(options)),
       atlas_(options, rig.depth->WithoutDistortion(), grid),
       preprocessor_(options.preprocessor(), *rig.depth, rig.depth_sensor),
-      tracker_(options, rig.depth->WithoutDistortion(), initial_pose, atlas_, stages_),
+      tracker_(options, rig.depth->WithoutDistortion(), initial_pose, atlas_),
       integrator_(options.tsdf()),
       gate_(options.tsdf()),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
   if (!thermal_status_.ok()) return;
-  thermal_stage_.emplace(options.thermal(), rig,
-                         static_cast<float>(options.raycast().expert().min_weight()), counts_,
-                         stages_[Stage::kThermalFrame]);
+  MakeThermalStage();
   if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
+}
+
+void GroundPipeline::MakeThermalStage() {
+  thermal_stage_.emplace(options_.thermal(), rig_,
+                         static_cast<float>(options_.raycast().expert().min_weight()), counts_);
 }
 
 Status GroundPipeline::Continue(const ModelFile& model) {
@@ -89,7 +96,8 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   return OkStatus();
 }
 
-ScanModel GroundPipeline::model() const {
+ScanModel GroundPipeline::model() {
+  const TrackerTimes& tracker = tracker_.times();
   return {.rig = rig_,
           .atlas = atlas_,
           .trajectory = tracker_.trajectory(),
@@ -98,17 +106,25 @@ ScanModel GroundPipeline::model() const {
           .uncertainty = tracker_.uncertainty(),
           .external_odometry = tracker_.external_odometry(),
           .counts = counts_,
-          .stages = stages_,
+          .stages = {{Stage::kDepthFrame, IfCalled(times_.depth_frame)},
+                     {Stage::kIntegrate, IfCalled(times_.integrate)},
+                     {Stage::kMerge, IfCalled(times_.merge)},
+                     {Stage::kPreprocess, IfCalled(times_.preprocess)},
+                     {Stage::kRaycast, IfCalled(tracker.raycast)},
+                     {Stage::kRelocalise, IfCalled(tracker.relocalise)},
+                     {Stage::kSubMaps, IfCalled(tracker.sub_maps)},
+                     {Stage::kThermalFrame, thermal_stage_ ? &thermal_stage_->times() : nullptr},
+                     {Stage::kTrack, IfCalled(tracker.track)}},
           .spiller = spiller_,
           .thermal_status = thermal_status_,
           .is_continued = is_continued_,
-          .threads = pool_.threads()};
+          .pool = pool_};
 }
 
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   DepthReport report;
   if (!Admit(frame, report)) return report;
-  StageTimer timer(stages_[Stage::kDepthFrame]);
+  StageTimer timer(times_.depth_frame);
   const PreparedDepth& depth = Prepare(frame);
   TrackedFrame tracked = Track(depth, frame.header.capture_time);
   const bool integrated = Integrate(depth, tracked);
@@ -149,7 +165,7 @@ bool GroundPipeline::HasCalibratedSize(const DepthFrame& frame) {
 }
 
 const PreparedDepth& GroundPipeline::Prepare(const DepthFrame& frame) {
-  const StageTimer timer(stages_[Stage::kPreprocess]);
+  const StageTimer timer(times_.preprocess);
   return preprocessor_.Process(frame, pool_);
 }
 
@@ -214,7 +230,7 @@ bool GroundPipeline::IsDue(const TrackedFrame& frame) {
 }
 
 bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth) {
-  const StageTimer timer(stages_[Stage::kIntegrate]);
+  const StageTimer timer(times_.integrate);
   SubMap& map = atlas_.active();
   integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
   // Temperatures lie beside the distances block by block, so they grow with them.
@@ -225,9 +241,9 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
   const std::uint64_t before = spiller_.spilled();
   spiller_.Trim(*map.tsdf, *map.thermal);
   if (before == 0 && spiller_.spilled() > 0) {
-    LOG(Ground, Info)
-        << "the model has outgrown volume.max_memory_bytes: what is far from the view goes to "
-        << options_.volume().spill_dir();
+    LOG(Ground, Info) << "the model has outgrown volume.expert.max_memory_bytes: what is far from "
+                         "the view goes to "
+                      << options_.volume().spill_dir();
   }
   if (spiller_.spilled() > 0) FetchNearView(T_map_depth);
   return map.tsdf->block_count() > 0;
@@ -269,8 +285,7 @@ DepthReport GroundPipeline::Report(const TrackedFrame& frame, bool integrated) c
 
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
-  // Of a camera that measures no temperatures (Encoding::kCounts16).
-  const bool is_counts = frame->temperature_raw.empty() && !frame->valid;
+  const bool is_counts = IsCountsOnly(*frame);
   if (is_counts && counts_.thermal_left_out[LeftOutReason::kCounts]++ == 0) {
     thermal_status_ = FailedPrecondition(
         "the thermal camera sends counts, which nothing relates to temperatures: none are fused, "
@@ -307,6 +322,8 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
       .tsdf = *map.tsdf,
       .refusal = WhyNoThermal(),
       .every_second = load_shedding_ == LoadShedding::kHalfThermal};
+  certainties_.push_back({frame.time, static_cast<float>(tracked.surface_sigma_rad),
+                          static_cast<float>(tracked.mean_depth_m)});
   thermal_stage_->FuseUpTo(tracked, *map.thermal, pool_);
 }
 
@@ -319,8 +336,29 @@ void GroundPipeline::Finish(const std::function<void(double)>& progress) {
   }
 }
 
+std::unique_ptr<ThermalPass> GroundPipeline::BeginThermalPass() {
+  // An earlier scan's temperatures cannot be measured again from the frames of this one.
+  if (counts_.thermal_fused == 0 || is_continued_ || spiller_.spilled() > 0) return nullptr;
+  std::vector<PassPose> poses;
+  auto certainty = certainties_.begin();
+  for (const StampedPose& pose : tracker_.trajectory().poses()) {
+    while (certainty != certainties_.end() && certainty->time < pose.time) ++certainty;
+    // A frame that came to be believed only later has none.
+    if (certainty == certainties_.end() || certainty->time != pose.time) continue;
+    poses.push_back(
+        {pose.time, pose.T_world_depth, certainty->surface_sigma_rad, certainty->mean_depth_m});
+  }
+  CHECK(atlas_.ForgetTemperatures());  // It had the room before.
+  counts_.ForgetThermal();
+  MakeThermalStage();
+  SubMap& map = atlas_.active();
+  return std::make_unique<ThermalPass>(
+      options_, rig_, std::move(poses),
+      PassModel{*map.tsdf, *map.thermal, *thermal_stage_, counts_, pool_});
+}
+
 void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
-  const StageTimer timer(stages_[Stage::kMerge]);
+  const StageTimer timer(times_.merge);
   const RigidTransform T_world_map = atlas_.active().T_world_map;
   const bool joined = atlas_.active().joined;
   if (!atlas_.Merge(options_.tsdf().expert().max_weight(), pool_, progress)) {
@@ -332,7 +370,7 @@ void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
     tracker_.Rebase(T_world_map);
     RaycastFrom(tracker_.view().T_map_depth);
   } else if (!poses.empty()) {
-    RaycastFrom(poses.back().T_world_depth);
+    RaycastFrom(InFirstMap(poses.back().T_world_depth));
   }
 }
 

@@ -4,20 +4,22 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "common/base/stage_stats.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/doubts/repeat_detector.h"
 #include "common/frame/frame.h"
 #include "common/rig/rig.h"
 #include "ground/atlas/atlas.h"
+#include "ground/model/block_spiller.h"
 #include "ground/model/model_file.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/block_spiller.h"
-#include "ground/pipeline/depth_report.h"
-#include "ground/pipeline/pipeline_counts.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/pipeline/thermal_pass.h"
 #include "ground/pipeline/thermal_stage.h"
-#include "ground/stage_times/stage_times.h"
+#include "ground/scan/depth_report.h"
+#include "ground/scan/scan_counts.h"
+#include "ground/scan/scan_model.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/tracker/tracker.h"
 #include "ground/tsdf/tsdf_integrator.h"
@@ -63,10 +65,13 @@ class GroundPipeline {
   /// those that were never joined. `progress` gets a fraction 0..1.
   void Finish(const std::function<void(double)>& progress = {});
 
+  /// After Finish: forgets all temperatures, and returns the pass that assigns them anew; it must
+  /// get all frames of the scan again, and refers to the pipeline. Returns nullptr, and changes
+  /// nothing, if there is nothing to assign, or parts of the model are on the disk.
+  std::unique_ptr<ThermalPass> BeginThermalPass();
+
   /// Returns what all frames so far have given.
-  ScanModel model() const;
-  /// For work between frames (views, results).
-  ThreadPool& pool() { return pool_; }
+  ScanModel model();
 
  private:
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
@@ -99,13 +104,26 @@ class GroundPipeline {
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
 
+  /// Holds how certain a pose was (TrackedDepth).
+  struct PoseCertainty {
+    CaptureTime time;
+    float surface_sigma_rad;
+    float mean_depth_m;
+  };
+  void MakeThermalStage();
+
+  /// Holds the times of work that no stage counts itself.
+  struct OwnTimes {
+    StageStats depth_frame, preprocess, integrate, merge;
+  };
+
   const GroundOptions options_;
   const Rig rig_;
   Status thermal_status_;
   bool is_continued_ = false;
   ThreadPool pool_;
-  PipelineCounts counts_;
-  StageTimes stages_;
+  ScanCounts counts_;
+  OwnTimes times_;
   Atlas atlas_;
   DepthPreprocessor preprocessor_;
   Tracker tracker_;
@@ -115,7 +133,8 @@ class GroundPipeline {
   VisibleBlocks near_view_;
   std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
   RepeatDetector repeats_;        ///< Among depth frames.
-  bool has_room_ = true;          ///< For temperatures; false once the disk to spill to is full.
+  std::vector<PoseCertainty> certainties_;  ///< One for each tracked frame, in order of time.
+  bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   LoadShedding load_shedding_ = LoadShedding::kNone;
   bool integrate_next_ = true;                 ///< With kEverySecond.
   std::optional<ThermalStage> thermal_stage_;  ///< Only if the rig's thermal frames can be fused.

@@ -61,7 +61,7 @@ TEST_F(GroundPipelineTest, EachThermalFrameIsAccountedFor) {
   for (int i = 3; i < 6; ++i) Depth(i);  // Found again; the motion around 1.5 is not known.
   Thermal(5.5);
   pipeline_->Finish();
-  const PipelineCounts& counts = pipeline_->model().counts;
+  const ScanCounts& counts = pipeline_->model().counts;
   EXPECT_EQ(counts.thermal_in, 5U);
   EXPECT_EQ(counts.thermal_fused, 1U);
   EXPECT_EQ(LeftOut(LeftOutReason::kNuc), 1U);

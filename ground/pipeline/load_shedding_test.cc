@@ -51,7 +51,7 @@ TEST_F(LoadSheddingTest, WithTimeForEverySecondFrameAllAreTracked) {
     EXPECT_EQ(report.integrated, i % 2 == 1) << i;
     EXPECT_LT(TranslationDistance(report.pose.T_map_depth, TruePose(i)), kMaxError) << i;
   }
-  const PipelineCounts& counts = pipeline_->model().counts;
+  const ScanCounts& counts = pipeline_->model().counts;
   EXPECT_EQ(counts.depth_tracked, 1U + kFrames);
   EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
   EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);

@@ -68,10 +68,10 @@ TEST_F(PipelineFailuresTest, F11AFrameOfAnotherSizeIsRefusedAndCounted) {
 }
 
 TEST_F(PipelineFailuresTest, OptionsOutOfRangeAreNamed) {
-  options_.mutable_tsdf()->set_truncation_distance_m(0.001);
+  options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.001);
   const auto created = GroundPipeline::Create(options_, rig_, std::nullopt);
   ASSERT_FALSE(created.has_value());
-  EXPECT_NE(created.error().message().find("tsdf.truncation_distance_m"), std::string::npos);
+  EXPECT_NE(created.error().message().find("tsdf.expert.truncation_distance_m"), std::string::npos);
   rig_.depth.reset();
   options_.clear_tsdf();
   EXPECT_FALSE(GroundPipeline::Create(options_, rig_, std::nullopt).has_value());
@@ -136,7 +136,7 @@ TEST_F(PipelineFailuresTest, F04WithoutThermalGeometryGoesOnAndHasNoTemperature)
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(Depth(i).tracked);
   EXPECT_EQ(pipeline_->model().counts.depth_integrated, 5U);
   const Surface surface = ExtractSurface(pipeline_->model().tsdf(), pipeline_->model().thermal(),
-                                         {}, pipeline_->pool());
+                                         {}, pipeline_->model().pool);
   ASSERT_GT(surface.points.size(), 500U);
   for (const CloudPoint& point : surface.points) ASSERT_TRUE(std::isnan(point.celsius));
 }
@@ -173,7 +173,7 @@ TEST_F(PipelineFailuresTest, F12TheMapHoldsNoValueThatIsNone) {
   for (const StampedPose& pose : pipeline_->model().trajectory.poses())
     EXPECT_TRUE(pose.T_world_depth.matrix().allFinite());
   const Surface surface = ExtractSurface(pipeline_->model().tsdf(), pipeline_->model().thermal(),
-                                         {}, pipeline_->pool());
+                                         {}, pipeline_->model().pool);
   ASSERT_GT(surface.points.size(), 500U);
   int measured = 0;
   for (const CloudPoint& point : surface.points) {

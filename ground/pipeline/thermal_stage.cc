@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ground/stage_times/stage_times.h"
+#include "common/base/stage_timer.h"
 #include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
@@ -26,14 +26,13 @@ CameraUncertainty UncertaintyOf(const ThermalOptions& options, const ThermalSens
 }  // namespace
 
 ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
-                           PipelineCounts& counts, StageStats& timing)
+                           ScanCounts& counts)
     : options_(options),
       camera_(*rig.thermal),
       T_depth_thermal_(rig.T_thermal_depth->inverse()),
       extrinsic_px_(ExtrinsicSigmaPx(rig.reprojection_error_px)),
       uncertainty_(UncertaintyOf(options, rig.thermal_sensor)),
       counts_(counts),
-      timing_(timing),
       fuser_(options, *rig.thermal, rig.thermal_sensor, min_weight),
       near_range_occlusion_(options.expert().occlusion(), rig.depth_sensor, fuser_.ideal_camera()),
       line_of_sight_occlusion_(options.expert().occlusion(), rig.depth_sensor,
@@ -58,7 +57,7 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
   waiting_.push_back({std::move(frame), nuc});
   // A depth stream that stopped must not make the buffer grow.
   // Frames wait for the depth frame behind them, a handful at 30 and 40 Hz. 64 are one and a half
-  // seconds: longer gaps are left out anyway (max_wait_s).
+  // seconds: longer gaps are left out anyway (max_depth_gap_s).
   constexpr std::size_t kMaxWaiting = 64;
   if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();
@@ -102,7 +101,7 @@ std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
   if (depth.refusal) return depth.refusal;
   if (!depth.before || time < depth.before->time) return LeftOutReason::kPoseUnknown;
   const double interval_s = ToSeconds(depth.now.time - depth.before->time);
-  if (interval_s > options_.expert().max_wait_s()) return LeftOutReason::kDepthGap;
+  if (interval_s > options_.expert().max_depth_gap_s()) return LeftOutReason::kDepthGap;
   if (RegistrationSigmaPx(time, depth) > options_.expert().max_registration_px())
     return LeftOutReason::kPoseUncertain;
   return std::nullopt;
@@ -110,7 +109,7 @@ std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
 
 void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool) {
   bool is_prepared = false;
-  while (!waiting_.empty() && waiting_.front().frame->header.capture_time <= depth.now.time) {
+  while (HasFramesUpTo(depth.now.time)) {
     const Waiting waiting = std::move(waiting_.front());
     waiting_.pop_front();
     if (const auto reason = WhyLeftOut(waiting.frame->header.capture_time, depth)) {
@@ -121,7 +120,7 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
       LeaveOut(LeftOutReason::kBehind);
       continue;
     }
-    const StageTimer timer(timing_);
+    const StageTimer timer(times_);
     // Several thermal frames share a depth frame: what depends on that alone is done once.
     if (!std::exchange(is_prepared, true)) {
       near_range_occlusion_.Update(depth.depth_m, depth.view.maps, depth.view.camera);
@@ -151,9 +150,11 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
                                   .camera = uncertainty_,
                                   .near_range = &near_range_occlusion_,
                                   .line_of_sight = &line_of_sight_occlusion_,
-                                  .nuc = waiting.nuc};
-  counts_.fusion += fuser_.Fuse(*waiting.frame, T_map_thermal, depth.view.camera,
-                                T_map_depth_at_capture, depth.tsdf, pool, thermal, capture);
+                                  .nuc = waiting.nuc,
+                                  .surface_is_finished = depth.is_finished};
+  counts_.fusion +=
+      fuser_.Fuse({*waiting.frame, T_map_thermal, depth.view.camera, T_map_depth_at_capture},
+                  capture, depth.tsdf, pool, thermal);
   ++counts_.thermal_fused;
 }
 

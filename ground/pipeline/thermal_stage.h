@@ -11,7 +11,7 @@
 #include "common/geometry/rigid_transform.h"
 #include "common/rig/rig.h"
 #include "ground/icp/icp_tracker.h"
-#include "ground/pipeline/pipeline_counts.h"
+#include "ground/scan/scan_counts.h"
 #include "ground/thermal/line_of_sight_occlusion.h"
 #include "ground/thermal/near_range_occlusion.h"
 #include "ground/thermal/nuc_epochs.h"
@@ -34,7 +34,14 @@ struct TrackedDepth {
   /// Says why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
   bool every_second = false;  ///< There is time for every second thermal frame only.
+  bool is_finished = false;   ///< CaptureConditions::surface_is_finished.
 };
+
+/// Returns whether a frame comes from a camera that measures no temperatures
+/// (Encoding::kCounts16).
+inline bool IsCountsOnly(const ThermalFrame& frame) {
+  return frame.temperature_raw.empty() && !frame.valid;
+}
 
 /// Takes thermal frames from their arrival to the model: each waits for the depth frame behind it,
 /// since its pose lies between those of two depth frames (6.2.3). What the rig did between them is
@@ -43,16 +50,22 @@ struct TrackedDepth {
 class ThermalStage {
  public:
   /// CheckThermalFusion(rig) is ok. Voxels lighter than `min_weight` do not count as observed.
-  /// `counts` and `timing` must outlive the stage.
-  ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
-               PipelineCounts& counts, StageStats& timing);
+  /// `counts` must outlive the stage.
+  ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight, ScanCounts& counts);
 
   /// Keeps a frame, or counts why not. Frames come in order of capture time. True if it was kept.
   bool Add(ThermalFramePtr frame);
+  /// Returns whether FuseUpTo has anything to do at this time.
+  bool HasFramesUpTo(CaptureTime time) const {
+    return !waiting_.empty() && waiting_.front().frame->header.capture_time <= time;
+  }
   /// Fuses, or counts as left out, what was captured up to `depth.now`.
   void FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool);
   /// Counts what still waits as left out, and reviews all temperatures.
   void Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool);
+
+  /// Returns the times of the frames that were fused.
+  const StageStats& times() const { return times_; }
 
  private:
   /// Holds a frame until the depth frames on both sides of it are tracked.
@@ -76,8 +89,8 @@ class ThermalStage {
   const RigidTransform T_depth_thermal_;
   const double extrinsic_px_;
   const CameraUncertainty uncertainty_;
-  PipelineCounts& counts_;
-  StageStats& timing_;
+  ScanCounts& counts_;
+  StageStats times_;
   ThermalFuser fuser_;
   NearRangeOcclusion near_range_occlusion_;
   LineOfSightOcclusion line_of_sight_occlusion_;

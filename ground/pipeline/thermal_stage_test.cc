@@ -36,7 +36,7 @@ class ThermalStageTest : public ::testing::Test {
     view_.T_map_depth = testing::FirstPose();
     Raycaster().Cast(*tsdf_, view_.camera, view_.T_map_depth, 0.0F, pool_, view_.maps);
     depth_m_ = Image<float>(rig_.depth->width, rig_.depth->height, 0.5F);
-    stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_, timing_);
+    stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_);
   }
 
   static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
@@ -85,8 +85,7 @@ class ThermalStageTest : public ::testing::Test {
   std::unique_ptr<ThermalVolume> thermal_;
   ModelView view_;
   Image<float> depth_m_;
-  PipelineCounts counts_;
-  StageStats timing_;
+  ScanCounts counts_;
   std::unique_ptr<ThermalStage> stage_;
 };
 
@@ -168,7 +167,7 @@ TEST_F(ThermalStageTest, WhereThePoseMovesTheImageTooFar) {
 }
 
 TEST_F(ThermalStageTest, WhereDepthFramesAreTooFarApart) {
-  const double frames = 30.0 * options_.expert().max_wait_s();
+  const double frames = 30.0 * options_.expert().max_depth_gap_s();
   stage_->Add(Frame(0.5));
   Fuse(Depth(0.0, frames + 0.1));
   EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthGap, 1}}));
@@ -225,8 +224,8 @@ TEST_F(ThermalStageTest, UncertaintyGrowsWithTheGapAndTowardsItsMiddle) {
   };
   // Half of hypot(2 / 0.5 m, 3) T^2 / 8 is a pixel of the thermal camera at T = 0.106 s.
   const double pixel_s = std::sqrt(8.0 / (0.5 * 5.0 * rig_.thermal->fx));
-  options_.mutable_expert()->set_max_wait_s(1.0);
-  stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_, timing_);
+  options_.mutable_expert()->set_max_depth_gap_s(1.0);
+  stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_);
   const double frames = 30.0 * pixel_s;
   EXPECT_FALSE(left_out(0.49 * frames, 0.98 * frames));
   EXPECT_TRUE(left_out(0.51 * frames, 1.02 * frames));
@@ -238,7 +237,7 @@ TEST_F(ThermalStageTest, UncertaintyGrowsWithTheGapAndTowardsItsMiddle) {
 }
 
 TEST_F(ThermalStageTest, ByDefaultAStreamOfTenHertzIsBridgedJitterIncluded) {
-  EXPECT_EQ(options_.expert().max_wait_s(), 0.12);
+  EXPECT_EQ(options_.expert().max_depth_gap_s(), 0.12);
   stage_->Add(Frame(0.1));
   Fuse(Depth(0.0, 12.0));
   EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthGap, 1}}));

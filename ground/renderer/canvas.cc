@@ -70,14 +70,14 @@ void Canvas::Frame(int x, int y, int width, int height, Rgb8 colour) {
   FillRectangle(x + width - 1, y, 1, height, colour);
 }
 
-void Canvas::FillTriangle(double x0, double y0, double x1, double y1, double x2, double y2,
-                          Rgb8 colour) {
-  const StrokeLine sides[] = {{x0, y0, x1, y1}, {x1, y1, x2, y2}, {x2, y2, x0, y0}};
-  const double winding = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0) > 0.0 ? 1.0 : -1.0;
-  const int left = std::max(Floor(std::min({x0, x1, x2})) - 1, 0);
-  const int top = std::max(Floor(std::min({y0, y1, y2})) - 1, 0);
-  const int right = std::min(Ceil(std::max({x0, x1, x2})) + 1, rendering_.width());
-  const int bottom = std::min(Ceil(std::max({y0, y1, y2})) + 1, rendering_.height());
+void Canvas::FillTriangle(const Point& a, const Point& b, const Point& c, Rgb8 colour) {
+  const StrokeLine sides[] = {{a.x, a.y, b.x, b.y}, {b.x, b.y, c.x, c.y}, {c.x, c.y, a.x, a.y}};
+  const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+  const double winding = area > 0.0 ? 1.0 : -1.0;
+  const int left = std::max(Floor(std::min({a.x, b.x, c.x})) - 1, 0);
+  const int top = std::max(Floor(std::min({a.y, b.y, c.y})) - 1, 0);
+  const int right = std::min(Ceil(std::max({a.x, b.x, c.x})) + 1, rendering_.width());
+  const int bottom = std::min(Ceil(std::max({a.y, b.y, c.y})) + 1, rendering_.height());
   for (int v = top; v < bottom; ++v) {
     for (int u = left; u < right; ++u) {
       double cover = 1.0;

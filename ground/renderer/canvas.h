@@ -20,7 +20,10 @@ class Canvas {
   void FillRectangle(int x, int y, int width, int height, Rgb8 colour);
   /// One pixel wide, inside the rectangle.
   void Frame(int x, int y, int width, int height, Rgb8 colour);
-  void FillTriangle(double x0, double y0, double x1, double y1, double x2, double y2, Rgb8 colour);
+  struct Point {
+    double x = 0.0, y = 0.0;
+  };
+  void FillTriangle(const Point& a, const Point& b, const Point& c, Rgb8 colour);
   /// `x` is the anchor chosen by `align`, `y_middle` the middle of a capital letter, `height_px`
   /// its height.
   void Text(double x, double y_middle, std::string_view text, double height_px, Rgb8 colour,

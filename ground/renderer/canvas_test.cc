@@ -113,7 +113,7 @@ TEST(CanvasTest, OutsideOfTheImageNothingIsDrawnAndUnknownLettersAreQuestionMark
   Canvas canvas(rendering);
   canvas.Text(-15, 0, "clipped on each side", 14, kWhite, TextAlign::kCentre);
   canvas.Text(1000, 1000, "far away", 14, kWhite);
-  canvas.FillTriangle(-5, -5, 50, 5, 3, 40, kWhite);
+  canvas.FillTriangle({-5, -5}, {50, 5}, {3, 40}, kWhite);
   EXPECT_EQ(TextWidth("\u00E4\u20AC\x01\xFF", 10.0), TextWidth("????", 10.0));
 }
 
@@ -124,7 +124,7 @@ TEST(CanvasTest, ATriangleIsOpenCvsTriangle) {
                                     {{20.0, 20.0}, {20.0, 44.0}, {50.0, 32.0}}};
   for (const auto& [a, b, c] : corners) {
     RgbImage rendering(72, 60);
-    Canvas(rendering).FillTriangle(a.x, a.y, b.x, b.y, c.x, c.y, kWhite);
+    Canvas(rendering).FillTriangle({a.x, a.y}, {b.x, b.y}, {c.x, c.y}, kWhite);
     cv::Mat large = cv::Mat::zeros(60 * kFactor, 72 * kFactor, CV_8U);
     const std::vector<cv::Point> points = {a * kFactor, b * kFactor, c * kFactor};
     cv::fillConvexPoly(large, points, cv::Scalar(255));

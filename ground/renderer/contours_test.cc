@@ -185,7 +185,7 @@ TEST_F(ContoursTest, NoLineAlongTheEdgeOfAnObjectInFront) {
 TEST_F(ContoursTest, ImageHasTheLineInItsColour) {
   FillGradient({500.0, 0.0});
   RendererOptions options;
-  options.set_legend(false);
+  options.mutable_expert()->set_legend(false);
   options.mutable_expert()->set_shading(false);
   options.set_scale(FIXED);
   ASSERT_TRUE(ParseIsotherms("60#00ff00", options).ok());

@@ -85,13 +85,14 @@ void DrawScaleBar(Panel& panel, Canvas& canvas, const ScaleLegend& legend,
   }
   canvas.Frame(x - 1, top - 1, width + 2, bottom - top + 2, kOutline);
   const double tip = panel.Px(11);
+  const double left = x, right = x + width - 1, middle = x + width / 2.0;
   if (scale.values_above) {
-    canvas.FillTriangle(x, top - 3, x + width - 1, top - 3, x + width / 2.0, top - 3 - tip,
-                        colour(scale.max_celsius));
+    const double y = top - 3;
+    canvas.FillTriangle({left, y}, {right, y}, {middle, y - tip}, colour(scale.max_celsius));
   }
   if (scale.values_below) {
-    canvas.FillTriangle(x, bottom + 2, x + width - 1, bottom + 2, x + width / 2.0, bottom + 2 + tip,
-                        colour(scale.min_celsius));
+    const double y = bottom + 2;
+    canvas.FillTriangle({left, y}, {right, y}, {middle, y + tip}, colour(scale.min_celsius));
   }
   DrawMarks(panel, canvas, legend, top, bottom);
   const int max_ticks = std::clamp((bottom - top) / panel.Px(26), 2, 12);

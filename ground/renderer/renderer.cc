@@ -274,7 +274,7 @@ RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<Temperature
       DrawLine(IsothermCover(*contours, line.celsius, width), line.colour, 1.0, rendering);
     }
   }
-  if (!options_.legend()) return rendering;
+  if (!options_.expert().legend()) return rendering;
   ScaleLegend legend = ThermalLegend(scale, contours != nullptr);
   legend.title = view.celsius_meaning;
   return WithLegend(rendering, legend, [&](double celsius) { return ColourOf(celsius, *scale); });
@@ -291,7 +291,7 @@ RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& clas
   const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     return Shaded(colour(x, y), options_.expert().shading() ? view.cos_view.At(x, y) : 1.0);
   });
-  if (!options_.legend()) return rendering;
+  if (!options_.expert().legend()) return rendering;
   ClassLegend counted = legend;
   CountFractions(view, colour, counted);
   return WithLegend(rendering, counted);
@@ -340,7 +340,7 @@ RgbImage Renderer::Values(const ViewMaps& view, const Image<float>& values, doub
     return std::isnan(view.celsius.At(x, y)) ? NeverMeasuredColour(x, y, cos_view)
                                              : Shaded(kUncheckedColour, cos_view);
   });
-  if (!options_.legend()) return rendering;
+  if (!options_.expert().legend()) return rendering;
   legend.rows = {{kUncheckedColour, "not known", "", ""}};
   return WithLegend(rendering, legend, colour);
 }
@@ -387,7 +387,7 @@ RgbImage Renderer::Coverage(const ViewMaps& view) const {
   const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     return Shaded(colour(x, y), options_.expert().shading() ? view.cos_view.At(x, y) : 1.0);
   });
-  if (!options_.legend()) return rendering;
+  if (!options_.expert().legend()) return rendering;
   CountFractions(view, colour, legend);
   return WithLegend(rendering, legend);
 }

@@ -37,7 +37,7 @@ ViewMaps EmptyView(int width, int height) {
 RendererOptions FixedScale(bool legend) {
   RendererOptions options;
   options.set_scale(FIXED);
-  options.set_legend(legend);
+  options.mutable_expert()->set_legend(legend);
   return options;
 }
 

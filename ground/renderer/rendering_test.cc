@@ -24,7 +24,7 @@ class RenderingTest : public ::testing::Test {
     camera_.fx = camera_.fy = 200.0;
     camera_.cx = 79.5;
     camera_.cy = 59.5;
-    options_.set_legend(false);
+    options_.mutable_expert()->set_legend(false);
     options_.set_scale(FIXED);
     options_.set_scale_min_celsius(kCold_celsius);
     options_.set_scale_max_celsius(kHot_celsius);

@@ -5,10 +5,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "common/base/units.h"
+
 namespace isotherm {
 namespace {
 
-constexpr double kZeroCelsius_kelvin = 273.15;
 constexpr double kFahrenheitPerKelvin = 1.8;
 constexpr double kFreezing_fahrenheit = 32.0;
 
@@ -27,7 +28,7 @@ DisplayUnit DisplayUnitOf(TemperatureUnit unit) {
     case FAHRENHEIT:
       return {"\u00B0F", kFahrenheitPerKelvin, kFreezing_fahrenheit};
     case KELVIN:
-      return {"K", 1.0, kZeroCelsius_kelvin};
+      return {"K", 1.0, kCelsiusZero_k};
   }
   return {};
 }
@@ -51,7 +52,7 @@ Result<double> ParseCelsius(std::string_view text) {
         "'{}' is no temperature: write a number in \u00B0C, or with F or K behind it", text)));
   }
   const double celsius = (value - unit.offset) / unit.factor;
-  if (celsius < -kZeroCelsius_kelvin) {
+  if (celsius < -kCelsiusZero_k) {
     return Err(InvalidArgument(fmt::format("'{}' is below absolute zero", text)));
   }
   return celsius;

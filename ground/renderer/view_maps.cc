@@ -10,14 +10,14 @@
 namespace isotherm {
 namespace {
 
-void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
+void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& p_map_viewer,
                  const TsdfVolume& tsdf, const ThermalVolume& thermal, int x, int y,
                  ViewMaps& view) {
-  const Eigen::Vector3d p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
-  const Eigen::Vector3d n_world(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
-  const Eigen::Vector3d ray = p_world - viewer_world;
+  const Eigen::Vector3d p_map(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
+  const Eigen::Vector3d n_map(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
+  const Eigen::Vector3d ray = p_map - p_map_viewer;
   const double distance_m = ray.norm();
-  const double cosine = std::abs(ray.dot(n_world)) / (distance_m * n_world.norm());
+  const double cosine = std::abs(ray.dot(n_map)) / (distance_m * n_map.norm());
   view.celsius.At(x, y) = NAN;
   view.distance_class.At(x, y) = kNeverMeasured;
   view.angle_class.At(x, y) = kNeverMeasured;
@@ -29,7 +29,7 @@ void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   if (!std::isfinite(cosine)) return;
   view.cos_view.At(x, y) = static_cast<float>(std::min(cosine, 1.0));
   view.distance_m.At(x, y) = static_cast<float>(distance_m);
-  const ThermalVoxel voxel = ThermalVoxelAt(tsdf, thermal, p_world);
+  const ThermalVoxel voxel = ThermalVoxelAt(tsdf, thermal, p_map);
   if (!voxel.assessed()) return;
   view.celsius.At(x, y) = voxel.celsius();
   view.distance_class.At(x, y) = static_cast<std::uint8_t>(voxel.distance_class());
@@ -55,13 +55,13 @@ MeasurementQuality QualityAt(const ViewMaps& view, int x, int y) {
                    view.motion_class.At(x, y));
 }
 
-void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
+void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& p_map_viewer,
                 const TsdfVolume& tsdf, const ThermalVolume& thermal, ThreadPool& threads,
                 ViewMaps& view) {
   view.Resize(maps.width(), maps.height());
   threads.ParallelFor(maps.height(), [&](int y) {
     for (int x = 0; x < maps.width(); ++x) {
-      SamplePixel(maps, viewer_world, tsdf, thermal, x, y, view);
+      SamplePixel(maps, p_map_viewer, tsdf, thermal, x, y, view);
     }
   });
 }
@@ -75,8 +75,8 @@ void SampleRecords(const SurfaceMaps& maps, const TsdfVolume& tsdf, const Therma
     for (int x = 0; x < maps.width(); ++x) {
       view.nuc_age_s.At(x, y) = view.sigma_k.At(x, y) = view.measured_angle_deg.At(x, y) = NAN;
       if (std::isnan(view.celsius.At(x, y))) continue;
-      const Eigen::Vector3d p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
-      const PointMeasurement measurement = MeasurementAt(tsdf, thermal, p_world);
+      const Eigen::Vector3d p_map(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
+      const PointMeasurement measurement = MeasurementAt(tsdf, thermal, p_map);
       if (measurement.conditions.empty()) continue;
       view.nuc_age_s.At(x, y) = measurement.conditions.age_s();
       view.sigma_k.At(x, y) = measurement.sigma_k;

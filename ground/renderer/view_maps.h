@@ -42,9 +42,9 @@ struct ViewMaps {
 MeasurementQuality QualityAt(const ViewMaps& view, int x, int y);
 
 /// Looks up the surface in the thermal volume (algorithms 7-9, lines 4-7 and 9-10). `maps` in
-/// `world`; `viewer_world` is where the ray-casting camera stood, metres. Rows in parallel; the
+/// `map`; `p_map_viewer` is where the ray-casting camera stood, metres. Rows in parallel; the
 /// result does not depend on the number of threads.
-void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
+void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& p_map_viewer,
                 const TsdfVolume& tsdf, const ThermalVolume& thermal, ThreadPool& threads,
                 ViewMaps& view);
 

@@ -50,8 +50,16 @@ TEST(OlderConfigurationTest, AGroupThatStandsAloneIsAListOfOne) {
 TEST(OlderConfigurationTest, WhatARenamedGroupContainsIsRenamedToo) {
   const GroundOptions options = Read(Json::parse(
       R"({"tracker": {"outside": {"source": "vio", "max_gap_s": 0.3, "T_depth_body": ""}}})"));
-  EXPECT_EQ(options.tracker().external_odometry().source(), "vio");
+  EXPECT_EQ(options.tracker().external_odometry().expert().source(), "vio");
   EXPECT_EQ(options.tracker().external_odometry().expert().max_gap_s(), 0.3);
+}
+
+TEST(OlderConfigurationTest, AnEverydayOptionThatBecameAnExpertsJoinsTheOthersThere) {
+  const GroundOptions options = Read(Json::parse(
+      R"({"thermal": {"keep_bad": true, "expert": {"max_wait_s": 0.3, "policy": "LOWEST_GOOD"}}})"));
+  EXPECT_TRUE(options.thermal().expert().keep_bad());
+  EXPECT_EQ(options.thermal().expert().max_depth_gap_s(), 0.3);
+  EXPECT_EQ(options.thermal().expert().policy(), LOWEST_GOOD);
 }
 
 }  // namespace

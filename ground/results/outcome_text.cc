@@ -5,7 +5,8 @@ namespace {
 
 constexpr EnumArray<LostReason, std::string_view> kLost = {
     {LostReason::kTooFewPixels,
-     "too few pixels between preprocessor.min_depth_m and max_depth_m; stay within the depth "
+     "too few pixels between preprocessor.expert.min_depth_m and max_depth_m; stay within the "
+     "depth "
      "camera's range"},
     {LostReason::kTooFewInliers, "too little of the image fits the model; move more slowly"},
     {LostReason::kResidual, "the image lies too far off the model; did something move?"},
@@ -31,7 +32,7 @@ constexpr EnumArray<LeftOutReason, std::string_view> kLeftOut = {
      "the pose was less certain than thermal.expert.max_registration_px; keep edges in view, and "
      "see that no depth frames are lost"},
     {LeftOutReason::kDepthGap,
-     "depth frames were missing around them for longer than thermal.expert.max_wait_s"},
+     "depth frames were missing around them for longer than thermal.expert.max_depth_gap_s"},
     {LeftOutReason::kBehind,
      "left out to keep up; `isotherm reconstruct` of the recording uses them, at its own pace"},
     {LeftOutReason::kDiskFull, "volume.spill_dir is full; free some space"},

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "common/base/enum_array.h"
-#include "ground/pipeline/pipeline_counts.h"
+#include "ground/scan/scan_counts.h"
 
 namespace isotherm {
 

@@ -31,7 +31,7 @@ Result<fs::path> FindModel(const fs::path& place) {
   fs::path file = place / kModelName;
   if (fs::exists(file, error)) return file;
   return Err(NotFound(fmt::format(
-      "{} has no {}: is it a result folder of isotherm reconstruct, and was export.model "
+      "{} has no {}: is it a result folder of isotherm reconstruct, and was export.expert.model "
       "on?",
       place.string(), kModelName)));
 }

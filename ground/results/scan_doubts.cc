@@ -29,7 +29,8 @@ std::string CauseOfNoPose(const ScanOutcome& outcome) {
   if (reason == LostReason::kTooFewPixels) {
     const DepthRange range = RangeOf(outcome.options.preprocessor(), outcome.depth_sensor);
     return fmt::format(
-        "nearly all depths lie outside of the depth camera's range or of preprocessor.min_depth_m "
+        "nearly all depths lie outside of the depth camera's range or of "
+        "preprocessor.expert.min_depth_m "
         "to max_depth_m ({:g} to {:g} m): is depth_scale (raw units per metre) of the calibration "
         "right?",
         range.min_m, range.max_m);
@@ -42,7 +43,7 @@ std::string CauseOfNoPose(const ScanOutcome& outcome) {
 }
 
 std::string NoTemperature(const ScanOutcome& outcome) {
-  const PipelineCounts& counts = outcome.counts;
+  const ScanCounts& counts = outcome.counts;
   if (counts.thermal_fused == 0) {
     const std::optional<LeftOutReason> reason = MainReason(counts.thermal_left_out);
     return fmt::format("none of {} thermal frames could be used: {}", counts.thermal_in,
@@ -59,14 +60,15 @@ std::string NoTemperature(const ScanOutcome& outcome) {
   return fmt::format(
       "{} thermal frames were used, but no temperature was measured under acceptable conditions: "
       "go nearer than thermal.distance.max_m ({:.3g} m) and less oblique than "
-      "thermal.angle.max_deg ({:g} degrees), or keep such temperatures with thermal.keep_bad",
+      "thermal.angle.max_deg ({:g} degrees), or keep such temperatures with "
+      "thermal.expert.keep_bad",
       counts.thermal_fused, limits.distance().max_m(), limits.angle().max_deg());
 }
 
 }  // namespace
 
 Doubts DoubtsAboutResult(const ScanOutcome& outcome) {
-  const PipelineCounts& counts = outcome.counts;
+  const ScanCounts& counts = outcome.counts;
   if (counts.depth_in > 0 && outcome.poses == 0) {
     if (outcome.continued) return {NotFoundInModel(outcome)};
     return {fmt::format("none of {} depth frames was tracked, so there is no surface: {}",

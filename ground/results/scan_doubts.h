@@ -4,13 +4,13 @@
 
 #include "common/doubts/doubts.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/pipeline_counts.h"
+#include "ground/scan/scan_counts.h"
 
 namespace isotherm {
 
 /// Holds what became of a scan, as far as it may prove that something was wrong from the start.
 struct ScanOutcome {
-  const PipelineCounts& counts;
+  const ScanCounts& counts;
   const GroundOptions& options;
   DepthSensorModel depth_sensor{};  ///< The rig's depth camera.
   ThermalSensorModel thermal_sensor{};

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "ground/results/outcome_text.h"
-#include "ground/stage_times/stage_times.h"
+#include "ground/scan/stage_times.h"
 
 namespace isotherm {
 namespace {
@@ -44,7 +44,7 @@ class ScanDoubtsTest : public ::testing::Test {
     return outcome;
   }
 
-  PipelineCounts counts_;
+  ScanCounts counts_;
   GroundOptions options_;
 };
 
@@ -88,7 +88,7 @@ TEST_F(ScanDoubtsTest, NoTemperatureNamesTheCause) {
   EXPECT_THAT(DoubtsAboutResult(NoTemperature()), ElementsAre(HasSubstr("T_thermal_depth right")));
   counts_.fusion.considered = 10000;
   EXPECT_THAT(DoubtsAboutResult(NoTemperature()),
-              ElementsAre(AllOf(HasSubstr("0.9 m"), HasSubstr("thermal.keep_bad"))));
+              ElementsAre(AllOf(HasSubstr("0.9 m"), HasSubstr("thermal.expert.keep_bad"))));
 }
 
 /// Names that are written into stats.json must be there for every value, and in the order of the

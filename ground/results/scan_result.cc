@@ -12,7 +12,7 @@
 #include "common/rig/rig_calibration.pb.h"
 #include "ground/export/result_files.h"
 #include "ground/json/message_json.h"
-#include "ground/pipeline/saved_model.h"
+#include "ground/model/saved_model.h"
 #include "ground/renderer/layers.h"
 #include "ground/results/scan_doubts.h"
 #include "ground/results/scan_text.h"
@@ -40,7 +40,7 @@ namespace {
 Json DescribeStages(const ScanModel& scan) {
   Json stages;
   for (const Stage stage : AllValues<Stage>()) {
-    if (const StageStats* stats = scan.stages.Find(stage))
+    if (const StageStats* stats = scan.stages[stage])
       stages[std::string(ToString(stage))] = DescribeStage(*stats);
   }
   return stages;
@@ -84,10 +84,10 @@ std::string ModelName(int map) {
 
 std::set<std::string> WrittenNames(const ExportOptions& options, bool has_view, int maps) {
   std::set<std::string> names = {"trajectory.txt", "stats.json"};
-  if (options.cloud()) names.insert("cloud.ply");
-  if (options.mesh()) names.insert("mesh.ply");
-  for (int map = 0; options.model() && map < maps; ++map) names.insert(ModelName(map));
-  if (!options.renders() || !has_view) return names;
+  if (options.expert().cloud()) names.insert("cloud.ply");
+  if (options.expert().mesh()) names.insert("mesh.ply");
+  for (int map = 0; options.expert().model() && map < maps; ++map) names.insert(ModelName(map));
+  if (!options.expert().renders() || !has_view) return names;
   for (const RenderLayer layer : AllLayers())
     names.insert(fmt::format("renders/{}.png", LayerName(layer)));
   return names;
@@ -129,7 +129,7 @@ Json DescribeDelay(const DelayReport& delay) {
 Status SaveModels(const ScanModel& scan, const GroundOptions& options,
                   const std::filesystem::path& dir,
                   const std::function<void(std::string_view what, double fraction)>& progress) {
-  if (!options.export_().model()) return OkStatus();
+  if (!options.export_().expert().model()) return OkStatus();
   Status first;
   for (int i = 0; i < scan.atlas.size(); ++i) {
     const Status saved = SaveSubMap(dir / ModelName(i), scan.atlas.map(i), scan.rig, [&](double) {
@@ -141,7 +141,7 @@ Status SaveModels(const ScanModel& scan, const GroundOptions& options,
   return first;
 }
 
-Json DescribeDepth(const PipelineCounts& counts) {
+Json DescribeDepth(const ScanCounts& counts) {
   Json depth;
   depth["in"] = counts.depth_in;
   depth["repeated"] = counts.depth_repeated;
@@ -157,7 +157,7 @@ Json DescribeDepth(const PipelineCounts& counts) {
   return depth;
 }
 
-Json DescribeThermal(const PipelineCounts& counts) {
+Json DescribeThermal(const ScanCounts& counts) {
   Json thermal;
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
@@ -225,7 +225,7 @@ Json DescribeScan(const ScanModel& scan, const GroundOptions& options) {
     json["external_odometry"] = DescribeOdometry(scan.external_odometry);
   json["frames"]["thermal"] = DescribeThermal(scan.counts);
   json["stages"] = DescribeStages(scan);
-  json["threads"] = scan.threads;
+  json["threads"] = scan.pool.threads();
   json["drift"] = DescribeDrift(scan.atlas);
   json["volume"] = DescribeVolume(scan);
   json["calibration"] = ToJson(ToProto(scan.rig));
@@ -250,13 +250,15 @@ Json DescribeProcessor(const ProcessorTimes& used, const Trajectory& trajectory)
 }
 
 Result<WrittenScan> WriteScan(
-    const ScanModel& scan, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
-    Json stats, const std::filesystem::path& dir, ThreadPool& pool,
+    const ScanModel& scan, const GroundOptions& options, const DriverReport& report,
+    const std::filesystem::path& dir,
     const std::function<void(std::string_view what, double fraction)>& progress) {
-  stats["delay_check"] = DescribeDelay(delay);
+  Json stats = report.stats;
+  stats["delay_check"] = DescribeDelay(report.delay);
+  Doubts doubts = report.doubts;
   const bool has_view = scan.view.maps.width() > 0;
   const SurfaceMaps view =
-      has_view ? CastFullView(scan, options.raycast().expert().min_weight(), pool) : SurfaceMaps();
+      has_view ? CastFullView(scan, options.raycast().expert().min_weight()) : SurfaceMaps();
   const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
   if (!interpretation) return Err(interpretation.error());
   const ResultInputs inputs{scan.tsdf(),
@@ -278,14 +280,14 @@ Result<WrittenScan> WriteScan(
   // The model goes first: all other results can be made again from it.
   const Status saved = SaveModels(scan, options, dir, progress);
   if (progress) progress("results", 0.0);
-  const Result<ResultSummary> summary = WriteResults(inputs, dir, pool, progress);
+  const Result<ResultSummary> summary = WriteResults(inputs, dir, scan.pool, progress);
   if (!saved.ok()) return Err(saved);
   if (!summary) return Err(summary.error());
   // Last, when all was written: an earlier scan's results must not pass for part of this one, and
   // must not be lost for one that failed.
   RemoveOtherResults(dir, WrittenNames(options.export_(), has_view, scan.atlas.size()));
 
-  std::string text = SummaryText(scan, options, delay, *summary, *interpretation);
+  std::string text = SummaryText(scan, options, report.delay, *summary, *interpretation);
   text += fmt::format("results  {}\n", dir.string());
   return WrittenScan{std::move(text), std::move(doubts)};
 }

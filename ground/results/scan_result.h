@@ -11,7 +11,7 @@
 #include "ground/calibration/delay_check.h"
 #include "ground/json/json.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 
@@ -31,12 +31,18 @@ struct WrittenScan {
   Doubts doubts;     ///< About what came in and what came out; stats.json has them as `warnings`.
 };
 
+/// Holds what a driver knows of a scan beside its model.
+struct DriverReport {
+  const DelayReport& delay;
+  const Doubts& doubts;  ///< About the frames.
+  const Json& stats;     ///< DescribeScan() and whatever the driver adds.
+};
+
 /// Writes all result files of a scan into `dir`. What an earlier scan left there and this one does
-/// not write is removed. `stats` is DescribeScan() plus whatever the driver adds; `delay` goes into
-/// stats and text, `doubts` about the frames into stats.
+/// not write is removed.
 Result<WrittenScan> WriteScan(
-    const ScanModel& scan, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
-    Json stats, const std::filesystem::path& dir, ThreadPool& pool,
+    const ScanModel& scan, const GroundOptions& options, const DriverReport& report,
+    const std::filesystem::path& dir,
     const std::function<void(std::string_view what, double fraction)>& progress);
 
 }  // namespace isotherm

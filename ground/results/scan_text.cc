@@ -40,7 +40,7 @@ std::string OdometryText(const OdometryPrior& odometry) {
 }
 
 /// Returns what was out of the ordinary with depth frames; a line, or nothing.
-std::string IncidentsText(const PipelineCounts& counts) {
+std::string IncidentsText(const ScanCounts& counts) {
   std::string text;
   const auto add = [&text](std::uint64_t count, const char* what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
@@ -85,7 +85,7 @@ std::string SubMapsText(const Atlas& atlas) {
 }
 
 std::string DepthText(const ScanModel& scan) {
-  const PipelineCounts& counts = scan.counts;
+  const ScanCounts& counts = scan.counts;
   std::string text = fmt::format("depth    {} frames: {} tracked, {} integrated\n", counts.depth_in,
                                  counts.depth_tracked, counts.depth_integrated);
   text += ExplainReasons(counts.depth_lost, "lost", ExplainLost);
@@ -101,7 +101,7 @@ std::string DepthText(const ScanModel& scan) {
 }
 
 std::string ThermalText(const ScanModel& scan, const DelayReport& delay) {
-  const PipelineCounts& counts = scan.counts;
+  const ScanCounts& counts = scan.counts;
   std::string text =
       fmt::format("thermal  {} frames: {} fused\n", counts.thermal_in, counts.thermal_fused);
   text += ExplainReasons(counts.thermal_left_out, "not used", ExplainLeftOut);
@@ -141,24 +141,26 @@ std::string MemoryText(const ScanModel& scan, const GroundOptions& options) {
   std::string text;
   if (scan.spiller.spilled() > 0) {
     text += fmt::format(
-        "memory   the model has outgrown volume.max_memory_bytes: {} blocks went to {}, and came "
+        "memory   the model has outgrown volume.expert.max_memory_bytes: {} blocks went to {}, and "
+        "came "
         "back when seen again\n",
         scan.spiller.spilled(), options.volume().spill_dir());
   }
   if (scan.tsdf().refused_blocks() > 0) {
-    text += "         volume.max_memory_bytes was reached: parts of the surface are missing\n";
+    text +=
+        "         volume.expert.max_memory_bytes was reached: parts of the surface are missing\n";
   }
   return text;
 }
 
 std::string TimeText(const ScanModel& scan) {
   const auto median = [&](Stage stage) {
-    const StageStats* times = scan.stages.Find(stage);
+    const StageStats* times = scan.stages[stage];
     return times == nullptr ? 0.0 : times->Percentile(50);
   };
   return fmt::format(
       "time     {:.1f} ms per depth frame, {:.1f} ms per thermal frame (medians, {} threads)\n",
-      median(Stage::kDepthFrame), median(Stage::kThermalFrame), scan.threads);
+      median(Stage::kDepthFrame), median(Stage::kThermalFrame), scan.pool.threads());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "ground/export/result_files.h"
 #include "ground/interpretation/interpretation.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/scan_model.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 

@@ -17,6 +17,14 @@ namespace isotherm {
 
 struct ScanBoard;
 
+/// Where a distributor sends items, and what it reports to.
+struct DistributorSinks {
+  SessionQueue& reconstruction;
+  RecordingQueue& recording;
+  ScanBoard& board;
+  ThreadProgress& progress;
+};
+
 /// Turns what the subscriber delivers into items for both consumers. Frames that arrive before
 /// their session's calibration are kept until it is there. It waits for the reconstruction, whose
 /// work cannot be left out uncounted, but for the disk only for a bounded time: frames that find no
@@ -24,15 +32,14 @@ struct ScanBoard;
 class Distributor {
  public:
   Distributor(const GroundOptions& options, bool single_scan, const Clock& clock,
-              SessionQueue& reconstruction, RecordingQueue& recording, ScanBoard& board,
-              ThreadProgress& progress)
+              const DistributorSinks& sinks)
       : options_(options),
         single_scan_(single_scan),
         clock_(clock),
-        reconstruction_(reconstruction),
-        recording_(recording),
-        board_(board),
-        progress_(progress) {}
+        reconstruction_(sinks.reconstruction),
+        recording_(sinks.recording),
+        board_(sinks.board),
+        progress_(sinks.progress) {}
 
   /// Nothing is waited for any more when `stop` is requested.
   void SetStop(std::stop_token stop) { stop_ = std::move(stop); }

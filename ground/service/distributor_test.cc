@@ -22,8 +22,9 @@ class DistributorTest : public ::testing::Test {
   void Start(bool single_scan = false, std::size_t recording_items = 100) {
     recording_ = std::make_unique<RecordingQueue>(
         RecordingQueue::Limits{.items = recording_items, .bytes = 1'000'000});
-    distributor_ = std::make_unique<Distributor>(options_, single_scan, clock_, reconstruction_,
-                                                 *recording_, board_, progress_);
+    distributor_ = std::make_unique<Distributor>(
+        options_, single_scan, clock_,
+        DistributorSinks{reconstruction_, *recording_, board_, progress_});
   }
   void Rig(std::uint64_t session = kSession) {
     RigDescription rig;

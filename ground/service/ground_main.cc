@@ -11,7 +11,6 @@
 #include "common/base/service.h"
 #include "common/base/status.h"
 #include "common/options/daemon_arguments.h"
-#include "common/options/protobuf_log.h"
 #include "common/options/text_proto.h"
 #include "common/time/clock.h"
 #include "common/transport/transport_environment.h"
@@ -95,17 +94,11 @@ int Main(int argc, char** argv) {
   CLI::App app;
   CommandLine line;
   Declare(app, line);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  SetLogLevel(line.shared.log_level);
-  LimitProtobufLog();
+  if (const std::optional<int> ended = Parse(app, argc, argv, line.shared)) return *ended;
   GroundOptions options;
   if (const Status applied = ApplyCommandLine(line, options); !applied.ok()) {
     LOG(Ground, Error) << applied.message();
-    return applied.code() == StatusCode::kNotFound ? ExitCode(applied) : kExitConfiguration;
+    return ConfigurationExitCode(applied);
   }
   if (const std::vector<Status> problems = ValidateAll(options); !problems.empty()) {
     for (const Status& problem : problems) LOG(Ground, Error) << problem.message();

@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "common/base/exit_deadline.h"
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "common/base/service.h"
 #include "common/transport/join_domain.h"
 #include "ground/export/result_files.h"
 #include "ground/service/distributor.h"
 #include "ground/service/health.h"
+#include "ground/service/output_folder.h"
 #include "ground/service/reconstruction_loop.h"
 #include "ground/service/recording_loop.h"
 #include "ground/service/result_writer.h"
@@ -73,8 +73,9 @@ class GroundService {
         to_reconstruction_(static_cast<std::size_t>(options.live().expert().queue_frames()),
                            OverflowPolicy::kBlock),
         to_recording_(kRecordingLimits),
-        distributor_(options, mode.single_scan, clock, to_reconstruction_, to_recording_, board_,
-                     health_.receive) {}
+        distributor_(options, mode.single_scan, clock,
+                     {to_reconstruction_, to_recording_, board_, health_.receive}),
+        output_folder_(options.live().output_dir(), &PrepareOutputDir) {}
 
   /// Joins the link.
   Status Open(const TransportEnvironment& environment);
@@ -106,6 +107,7 @@ class GroundService {
   ExitDeadline leaving_;  // Outlives the participant.
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Subscriber> subscriber_;
+  OutputFolder output_folder_;
   SteadyTime next_feed_{};
   std::optional<std::string> reported_problem_;
 };
@@ -155,8 +157,8 @@ int GroundService::Run() {
   const auto counters = [this](std::uint64_t session) { return subscriber_->counters(session); };
   ResultWriter results(options_, clock_, counters, board_, health_.results, written);
   RecordingLoop recording(options_, clock_, board_, health_.recording);
-  ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
-                                    health_.reconstruction);
+  ReconstructionLoop reconstruction(
+      options_, clock_, {*subscriber_, to_recording_, results, board_, health_.reconstruction});
   {
     // Consumers are started before the producers, and stopped behind them below.
     Worker result_thread("results", [&](const std::stop_token& stop) { results.Run(stop); });
@@ -202,12 +204,10 @@ void GroundService::GuardUntilStopped() {
   // are enough, and cost nothing.
   constexpr Nanoseconds kTick = 200ms;
   StatusReporter status(clock_);
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock lock(mutex);
   const std::stop_token stop = signal_.token();
-  while (!wake.wait_for(lock, stop, kTick, [&] { return stop.stop_requested(); })) {
+  for (Pause(stop, kTick); !stop.stop_requested(); Pause(stop, kTick)) {
     FeedWatchdog();
+    output_folder_.Tend(clock_.SteadyNow());
     status.Report(Situation());
   }
 }
@@ -237,7 +237,8 @@ GroundSituation GroundService::Situation() const {
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
                             .scans_given_up = board_.scans_given_up,
-                            .problem = reported_problem_};
+                            .problem = reported_problem_,
+                            .folder_problem = output_folder_.problem()};
   if (const auto tracker = board_.recording.Get()) situation.recording = (*tracker)->Get();
   return situation;
 }
@@ -275,8 +276,6 @@ void GroundService::LeaveBehind(GroundThread stuck) {
   const int exit_code = ExitCode(IoError(""));
   LOG(Ground, Error) << StuckText(stuck) << "; leaving without it";
   // The link is not torn down: the stuck thread may still use it. The rig notices within the lease.
-  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "standard output");
-  std::fflush(nullptr);
   _exit(exit_code);
 }
 
@@ -284,8 +283,10 @@ void GroundService::LeaveBehind(GroundThread stuck) {
 
 int RunGround(const GroundOptions& options, const ServiceMode& mode,
               const TransportEnvironment& environment, const Clock& clock, StopSignal& signal) {
-  if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
-    return Fail(prepared);
+  if (mode.single_scan) {  // Somebody who waits for one scan wants to know at once.
+    if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
+      return Fail(prepared);
+  }
   GroundService service(options, mode, clock, signal);
   if (const Status opened = service.Open(environment); !opened.ok())
     return signal.token().stop_requested() ? 0 : Fail(opened);

@@ -6,12 +6,19 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "common/base/units.h"
 #include "ground/subscriber/clock_watch.h"
 
 namespace isotherm {
 namespace {
+
+std::string InUnderscores(std::string_view words) {
+  std::string name(words);
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
 
 Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
                     const NotRecordedCounts& left_out) {
@@ -24,10 +31,13 @@ Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
   json["refused"] = counters.refused;
   for (std::size_t i = 0; i < counters.refused_by_cause.size(); ++i) {
     if (counters.refused_by_cause[i] == 0) continue;
-    std::string cause(ToString(static_cast<RefusalCause>(i)));
-    std::ranges::replace(cause, ' ', '_');
-    json["refused_by_cause"][cause] = counters.refused_by_cause[i];
+    json["refused_by_cause"][InUnderscores(ToString(static_cast<RefusalCause>(i)))] =
+        counters.refused_by_cause[i];
   }
+  for (const DropCount& drop : counters.dropped_by_rig) {
+    json["dropped_by_rig"][InUnderscores(drop.reason)] = drop.frames;
+  }
+  if (counters.captured_by_rig > 0) json["captured_by_rig"] = counters.captured_by_rig;
   json["recorded"] = recorded;
   for (const NotRecorded reason : AllValues<NotRecorded>()) {
     if (left_out[reason] > 0) json["not_recorded_by_reason"][ToString(reason)] = left_out[reason];
@@ -60,11 +70,24 @@ std::string RecordingText(const RecordingProgress& recording) {
   return text;
 }
 
+/// Returns what never left the rig and why, or nothing.
+std::string RigText(const StreamCounters& counters) {
+  std::string reasons;
+  std::uint64_t frames = 0;
+  for (const DropCount& drop : counters.dropped_by_rig) {
+    frames += drop.frames;
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", drop.reason, drop.frames);
+  }
+  if (frames == 0) return {};
+  return fmt::format("         the rig dropped {} of {} captured: {}\n", frames,
+                     counters.captured_by_rig, reasons);
+}
+
 std::string StreamText(const char* name, const StreamCounters& counters, std::uint64_t recorded) {
   std::string text = fmt::format("{:<8} {} published = {} received + {} missing; {} recorded", name,
                                  counters.published, counters.received, counters.missing, recorded);
   if (counters.refused > 0) text += fmt::format("; {} samples refused", counters.refused);
-  return text + "\n";
+  return text + "\n" + RigText(counters);
 }
 
 void DescribeClock(const SessionClock& clock, Json& json) {

@@ -42,5 +42,31 @@ TEST(LinkCountersTest, F43StatsHaveTheNewestFailureAndTheFramesByReason) {
   EXPECT_EQ(link["recording_failed_frames"], 7);
 }
 
+/// A narrow link: the rig's queue ran over, what left it arrived.
+SessionCounters NarrowLink() {
+  SessionCounters counters;
+  counters.ended = true;
+  counters.depth = {.published = 1037, .received = 1037};
+  counters.depth.captured_by_rig = 1800;
+  counters.depth.dropped_by_rig = {{"queue full", 760}, {"rejected", 3}};
+  return counters;
+}
+
+TEST(LinkCountersTest, F28WhatTheRigDroppedItselfIsInTheSummaryWithItsReasons) {
+  EXPECT_THAT(CountersText(NarrowLink(), {}),
+              HasSubstr("link     1037 published = 1037 received + 0 missing; 0 recorded\n"
+                        "         the rig dropped 763 of 1800 captured: queue full 760, rejected "
+                        "3\n"));
+  EXPECT_THAT(CountersText({}, {}), Not(HasSubstr("the rig dropped")));
+}
+
+TEST(LinkCountersTest, F28StatsHaveItToo) {
+  Json link;
+  DescribeCounters(NarrowLink(), {}, link);
+  EXPECT_EQ(link["depth"]["captured_by_rig"], 1800);
+  EXPECT_EQ(link["depth"]["dropped_by_rig"]["queue_full"], 760);
+  EXPECT_FALSE(link["thermal"].contains("dropped_by_rig"));
+}
+
 }  // namespace
 }  // namespace isotherm

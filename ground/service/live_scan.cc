@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/base/check.h"
 #include "common/base/log.h"
 #include "common/base/units.h"
 #include "ground/results/scan_result.h"
@@ -78,18 +79,19 @@ ProcessorTimes LiveScan::processor_times() const {
 }
 
 BehindCounts LiveScan::behind() const {
-  const PipelineCounts& counts = model().counts;
+  const ScanCounts& counts = model().counts;
   return {.now = is_behind_,
           .thermal_frames = counts.thermal_left_out[LeftOutReason::kBehind],
           .depth_frames = counts.depth_behind};
 }
 
 DelayReport LiveScan::CheckDelay(const std::function<void()>& progress) {
+  CHECK(processor_after_.has_value());
   // A check of 3 to 4 s (docs/timing.md) says once that it is at work; a shorter one says nothing.
   constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   const SteadyTime start = clock_.SteadyNow();
   bool told = false;
-  return delay_check_.Finish(model(), pool(), [&](double fraction) {
+  return delay_check_.Finish(model(), [&](double fraction) {
     if (progress) progress();
     if (told || clock_.SteadyNow() - start < kSilence) return;
     told = true;
@@ -151,7 +153,7 @@ std::optional<Feedback> LiveScan::TakeFeedback() {
   if (!moment) return std::nullopt;
   const SteadyTime start = clock_.SteadyNow();
   moment->ground_is_behind = is_behind_;
-  Feedback feedback = feedback_.Make(*moment, model(), pool());
+  Feedback feedback = feedback_.Make(*moment, model());
   making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
   LogWhenDone();
   return feedback;
@@ -173,7 +175,7 @@ void LiveScan::ThinkAhead() {
   // Looking for the next view costs milliseconds that frames are waiting for.
   if (is_behind_) return;
   const SteadyTime start = clock_.SteadyNow();
-  feedback_.ThinkAhead(model(), pool());
+  feedback_.ThinkAhead(model());
   thinking_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
 }
 

@@ -16,8 +16,8 @@
 #include "common/time/clock.h"
 #include "ground/assembler/assembler.h"
 #include "ground/calibration/delay_check.h"
-#include "ground/guidance/feedback_maker.h"
-#include "ground/guidance/feedback_pace.h"
+#include "ground/feedback/feedback_maker.h"
+#include "ground/feedback/feedback_pace.h"
 #include "ground/json/json.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/ground_pipeline.h"
@@ -44,15 +44,15 @@ class LiveScan {
   void Add(const ExternalOdometrySample& sample);
   /// Processes what the assembler still holds back.
   void FinishFrames(const std::function<void(double fraction)>& progress = {});
-  /// To be called after FinishFrames: says whether the delay that the edge added to thermal stamps
-  /// is right.
+  /// Says whether the delay that the edge added to thermal stamps is right, once the frames are
+  /// finished (CHECK).
   DelayReport CheckDelay(const std::function<void()>& progress = {});
 
   /// Returns feedback on the newest depth frame if a message is due (live.expert.feedback_hz, by
   /// capture time).
   std::optional<Feedback> TakeFeedback();
-  /// To be called when the feedback was sent: prepares the next message. Does nothing while frames
-  /// wait.
+  /// Prepares the next message of feedback, a bounded part of the work each time; callers send
+  /// first. Does nothing while frames wait.
   void ThinkAhead();
   /// Returns what this process has used since the scan began, results and delay check left out once
   /// the frames are finished. Two scans that overlap both count.
@@ -77,8 +77,6 @@ class LiveScan {
   }
   /// Returns what all frames so far have given.
   ScanModel model() const { return pipeline_->model(); }
-  /// Lends the results the pipeline's threads.
-  ThreadPool& pool() { return pipeline_->pool(); }
   const Rig& rig() const { return rig_; }
 
  private:

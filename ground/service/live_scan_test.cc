@@ -25,7 +25,8 @@ class LiveScanTest : public ::testing::Test {
     VolumeOptions& volume = *options_.mutable_volume();
     volume = testing::SmallVolume();
     *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
-    options_.mutable_tsdf()->set_truncation_distance_m(testing::kSmallTruncation_m);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(
+        testing::kSmallTruncation_m);
     options_.mutable_live()->mutable_expert()->set_max_wait_s(0.1);
     options_.set_threads(2);
     rig_.rig.thermal_sensor.time_constant_s = 0.001;  // What is near moves fast.
@@ -66,7 +67,7 @@ class LiveScanTest : public ::testing::Test {
     }
   }
 
-  const PipelineCounts& counts() { return scan_->model().counts; }
+  const ScanCounts& counts() { return scan_->model().counts; }
   std::uint64_t ThermalBehind() { return counts().thermal_left_out[LeftOutReason::kBehind]; }
 
   FakeClock clock_{CaptureTime(FromSeconds(1000.0))};

@@ -1,7 +1,5 @@
 #include "ground/service/reconstruction_loop.h"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "common/base/log.h"
@@ -96,13 +94,8 @@ void ReconstructionLoop::SendFeedback(const Feedback& feedback) {
   const BehindCounts behind = scan_->behind();
   board_.feedback.Set(feedback);
   board_.behind.Set(behind);
-  // The edge has no member for this; its operator is told in words.
   Feedback sent = feedback;
-  if (behind.thermal_frames > 0) {
-    sent.advice_reason +=
-        fmt::format("{}the ground is behind, {} thermal frames were left out",
-                    sent.advice_reason.empty() ? "" : "; ", behind.thermal_frames);
-  }
+  sent.frames_left_out = static_cast<std::uint32_t>(behind.thermal_frames);
   if (const Status status = subscriber_.Publish(sent); !status.ok()) {
     LOG(Ground, Debug) << "feedback not sent: " << status.message();
   }

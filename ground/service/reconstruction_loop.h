@@ -15,21 +15,28 @@
 
 namespace isotherm {
 
+/// Holds those that a reconstruction gives something to.
+struct ReconstructionSinks {
+  Subscriber& subscriber;     ///< Feedback, to the rig.
+  RecordingQueue& recording;  ///< Feedback, to the disk.
+  ResultWriter& results;      ///< Scans that have ended.
+  ScanBoard& board;
+  ThreadProgress& progress;
+};
+
 /// Reconstructs one session after the other, hands ended ones over to have their results written,
 /// and sends feedback. Thread-bound to the reconstruction thread.
 class ReconstructionLoop {
  public:
-  /// `recording` gets the feedback, `results` the scans that have ended.
-  ReconstructionLoop(const GroundOptions& options, const Clock& clock, Subscriber& subscriber,
-                     RecordingQueue& recording, ResultWriter& results, ScanBoard& board,
-                     ThreadProgress& progress)
+  ReconstructionLoop(const GroundOptions& options, const Clock& clock,
+                     const ReconstructionSinks& sinks)
       : clock_(clock),
         options_(options),
-        subscriber_(subscriber),
-        recording_(recording),
-        results_(results),
-        board_(board),
-        progress_(progress) {}
+        subscriber_(sinks.subscriber),
+        recording_(sinks.recording),
+        results_(sinks.results),
+        board_(sinks.board),
+        progress_(sinks.progress) {}
 
   /// Until stop is requested; frames that wait then are counted and left out.
   void Run(SessionQueue& queue, const std::stop_token& stop);

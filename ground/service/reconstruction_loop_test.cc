@@ -53,8 +53,9 @@ class ReconstructionLoopTest : public ::testing::Test {
     VolumeOptions& volume = *options_.mutable_volume();
     volume = testing::SmallVolume();
     *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
-    options_.mutable_tsdf()->set_truncation_distance_m(testing::kSmallTruncation_m);
-    options_.mutable_delay_check()->set_enabled(false);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(
+        testing::kSmallTruncation_m);
+    options_.mutable_delay_check()->mutable_expert()->set_enabled(false);
     options_.mutable_live()->set_output_dir(folder_.path().string());
     options_.set_threads(1);
   }
@@ -144,7 +145,8 @@ class ReconstructionLoopTest : public ::testing::Test {
                         result_progress_,
                         [this] { ++written_; }};
   SessionQueue queue_{1000, OverflowPolicy::kBlock};
-  ReconstructionLoop loop_{options_, clock_, subscriber_, recording_, results_, board_, progress_};
+  ReconstructionLoop loop_{
+      options_, clock_, {subscriber_, recording_, results_, board_, progress_}};
   std::jthread loop_thread_, result_thread_;
 };
 
@@ -247,9 +249,7 @@ TEST_F(ReconstructionLoopTest, TheRigsOperatorIsToldWhatWasLeftOutToKeepUp) {
   AwaitResults(1);
   End();
   ASSERT_GE(subscriber_.published.size(), 2U);
-  EXPECT_THAT(subscriber_.published.back().advice_reason, HasSubstr("the ground is behind, "));
-  EXPECT_THAT(subscriber_.published.back().advice_reason,
-              HasSubstr(" thermal frames were left out"));
+  EXPECT_GT(subscriber_.published.back().frames_left_out, 0U);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "ground/service/recording_tracker.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include "common/recording/disk_time.h"
 
 namespace isotherm {
 
@@ -33,15 +33,10 @@ std::uint64_t RecordingProgress::left_out(NotRecorded reason) const {
 }
 
 std::string DiskText(const RecordingProgress& progress) {
-  constexpr double kSecondsPerMinute = 60.0;
-  constexpr double kMinutesPerHour = 60.0;
   if (progress.path.empty() || progress.closed || !(progress.bytes_per_s > 0.0)) return {};
   const std::uint64_t usable =
       progress.free_bytes - std::min(progress.free_bytes, progress.reserve_bytes);
-  const double minutes = static_cast<double>(usable) / progress.bytes_per_s / kSecondsPerMinute;
-  if (minutes < 2.0 * kMinutesPerHour) return fmt::format("disk: {:.0f} min left", minutes);
-  const double hours = minutes / kMinutesPerHour;
-  return hours < 100.0 ? fmt::format("disk: {:.0f} h left", hours) : "disk: days left";
+  return DiskTimeText(static_cast<double>(usable) / progress.bytes_per_s);
 }
 
 RecordingProgress RecordingTracker::WaitUntilClosed(std::chrono::nanoseconds patience) const {

@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/standard_error.h"
 #include "common/doubts/doubts.h"
 #include "ground/export/result_files.h"
 #include "ground/results/scan_result.h"
+#include "ground/service/conclusion.h"
 #include "ground/service/link_counters.h"
 
 namespace isotherm {
@@ -51,30 +52,6 @@ fs::path SecondFolder(const fs::path& folder) {
   const fs::path name = fs::absolute(folder, error).lexically_normal();
   return base /
          ("isotherm-" + (name.has_filename() ? name : name.parent_path()).filename().string());
-}
-
-/// Returns what the operator should do next.
-std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
-                           const RecordingProgress& recording) {
-  std::string text;
-  if (const BehindCounts behind = scan.behind(); behind.thermal_frames > 0) {
-    text += fmt::format(
-        "behind   {} thermal frames were left out to keep up: isotherm reconstruct {} -o FOLDER "
-        "uses them\n",
-        behind.thermal_frames, recording.path.empty() ? "RECORDING" : recording.path.string());
-  }
-  const SurfaceAreas areas = scan.areas();
-  if (!(areas.total_m2() > 0.0)) return text;
-  const auto percent = [&](double area_m2) { return 100.0 * area_m2 / areas.total_m2(); };
-  text += fmt::format("next     measured well: {:.0f} % of {:.2f} m2", percent(areas.good_m2),
-                      areas.total_m2());
-  if (areas.good_m2 >= options.feedback().done_fraction() * areas.total_m2())
-    return text + ", as was asked for: the scan is done\n";
-  return text + fmt::format(
-                    ", {:.0f} % are asked for: go on with the {:.0f} % that were never measured "
-                    "and the {:.0f} % from a bad distance or angle\n",
-                    100.0 * options.feedback().done_fraction(), percent(areas.never_m2),
-                    percent(areas.bad_m2));
 }
 
 }  // namespace
@@ -153,10 +130,9 @@ void ResultWriter::FinishScan(EndedScan ended) {
     LOG(Ground, Error) << status_.message();
     return;
   }
-  const std::string summary =
-      *text + CountersText(counters, recording) + ConclusionText(scan, options_, recording);
-  std::fputs(summary.c_str(), stdout);
-  std::fflush(stdout);
+  WriteStandardOutput(*text + CountersText(counters, recording) +
+                      ConclusionText(scan.behind(), scan.areas(),
+                                     options_.feedback().done_fraction(), recording.path));
 }
 
 Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayReport& delay,
@@ -164,8 +140,8 @@ Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayR
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
-    Result<WrittenScan> written = WriteScan(scan.model(), options_, delay, DoubtsAbout(scan.rig()),
-                                            stats, to, scan.pool(), progress);
+    Result<WrittenScan> written =
+        WriteScan(scan.model(), options_, {delay, DoubtsAbout(scan.rig()), stats}, to, progress);
     if (!written) return Err(written.error());
     for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
     return std::move(written->text);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -24,6 +25,9 @@ ScanRecorder::CreateWriter OnDisk(const GroundOptions& options) {
   recording.image_storage =
       options.live().expert().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
   return [recording](const std::filesystem::path& path) {
+    // The disk may have come since the scan began. That there is no folder is said by what follows.
+    std::error_code ignored;
+    std::filesystem::create_directories(path.parent_path(), ignored);
     return RecordingWriter::Create(path, recording);
   };
 }

@@ -34,7 +34,9 @@ std::uint64_t Dropped(const StreamStatus& stream) {
 }
 
 constexpr double kBytesPerGb = 1e9;
-/// The rig keeps this in reserve at most: there its recording ends (spool.reserve_mb).
+/// A hand that follows advice of so long ago has moved on.
+constexpr double kOldFeedback_s = 1.0;
+/// The rig keeps this in reserve at most: there its recording ends (spool.expert.reserve_mb).
 constexpr double kRigDiskEnds_gb = 1.0;
 /// A recording of ten minutes and the reserve take this much.
 constexpr double kRigDiskLow_gb = 4.0;
@@ -45,10 +47,10 @@ std::optional<double> RigDisk_gb(const GroundSituation& situation) {
   return static_cast<double>(situation.edge->disk_free_bytes) / kBytesPerGb;
 }
 
-/// Adds what the operator should do something about.
-void AddTroubles(const GroundSituation& situation, std::vector<std::string>& parts) {
-  // Shorter stalls are over before anybody has looked. Not tuned.
+/// Returns what the operator should do something about.
+std::vector<std::string> TroublesOf(const GroundSituation& situation) {
   constexpr Nanoseconds kSlow = std::chrono::seconds(2);
+  std::vector<std::string> parts;
   if (situation.behind.thermal_frames > 0)
     parts.push_back(fmt::format("BEHIND {}", situation.behind.thermal_frames));
   if (situation.recording_at_it > kSlow) {
@@ -60,10 +62,12 @@ void AddTroubles(const GroundSituation& situation, std::vector<std::string>& par
     parts.push_back(fmt::format("RESULTS OF {} SCANS LOST", situation.scans_given_up));
   if (situation.link.counters.clock && situation.link.counters.clock->alarm)
     parts.emplace_back("CLOCK ALARM");
+  if (situation.folder_problem) parts.push_back("NO OUTPUT FOLDER: " + *situation.folder_problem);
   if (situation.recording.paused) parts.emplace_back("NOT RECORDING");
   if (situation.recording.left_out() > 0) {
     parts.push_back(fmt::format("RECORDING LACKS {} frames", situation.recording.left_out()));
   }
+  return parts;
 }
 
 /// Adds what has arrived of the scan, and where it stays.
@@ -74,6 +78,8 @@ void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) 
   if (situation.edge) {
     const std::uint64_t dropped = Dropped(situation.edge->depth) + Dropped(situation.edge->thermal);
     if (dropped > 0) parts.push_back(fmt::format("dropped by the rig {}", dropped));
+    if (const double age_s = situation.edge->feedback.p50_s; age_s > kOldFeedback_s)
+      parts.push_back(fmt::format("advice is {:.1f} s old when it reaches the rig", age_s));
   }
   if (std::string disk = DiskText(situation.recording); !disk.empty())
     parts.push_back(std::move(disk));
@@ -100,17 +106,15 @@ std::vector<std::string> StatusParts(const GroundSituation& situation) {
   if (!link.rig_problem.empty()) parts.push_back(link.rig_problem);
   const bool has_scan = link.counters.session != 0 && !link.counters.closed;
   if (!link.edge_present && has_scan) parts.emplace_back("RIG LOST");
-  std::vector<std::string> said;
-  if (situation.feedback) said = FeedbackParts(*situation.feedback);
-  if (!said.empty()) {
-    parts.push_back(said.front());
+  std::vector<std::string> said = TroublesOf(situation);
+  if (situation.feedback) {
+    said = FeedbackParts(*situation.feedback, std::move(said));
   } else if (has_scan) {
     parts.emplace_back("scanning");
   } else {
     parts.emplace_back(link.edge_present ? "rig found, no scan yet" : "waiting for a rig");
   }
-  AddTroubles(situation, parts);
-  if (!said.empty()) parts.insert(parts.end(), said.begin() + 1, said.end());
+  parts.insert(parts.end(), said.begin(), said.end());
   if (situation.scans_being_written > 0) parts.emplace_back("writing results");
   if (link.counters.session == 0) return parts;
   AddScan(situation, parts);

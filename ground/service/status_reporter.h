@@ -21,8 +21,9 @@ struct GroundSituation {
   RecordingProgress recording;
   Nanoseconds recording_at_it{0};  ///< How long the disk has been at one piece of work.
   int scans_being_written = 0;
-  int scans_given_up = 0;              ///< Their results are lost.
-  std::optional<std::string> problem;  ///< The part that is stuck.
+  int scans_given_up = 0;                       ///< Their results are lost.
+  std::optional<std::string> problem;           ///< The part that is stuck.
+  std::optional<std::string> folder_problem{};  ///< The reason for which nothing can be written.
 };
 
 /// A part per fact, the most important first: what to do, what is wrong, how the scan is, what has

@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-constexpr std::size_t kColumns = 79;  // Of a terminal with 80: a full line would wrap.
+constexpr std::size_t kColumns = 79;  // A terminal has 80; a full line would wrap.
 
 GroundSituation Scanning() {
   GroundSituation situation;
@@ -63,7 +63,7 @@ TEST(StatusReporterTest, F48WorkThatWasLeftOutIsSaidWithWhatToDo) {
   GroundSituation situation = Scanning();
   situation.behind = {.now = true, .thermal_frames = 764, .depth_frames = 0};
   EXPECT_EQ(Narrow(situation),
-            "closer (40 % of the surface is farther than 0.60 m) | BEHIND 764 | tracked");
+            "closer | BEHIND 764 | 40 % of the surface is farther than 0.60 m | tracked");
   EXPECT_THAT(StatusText(situation),
               HasSubstr("reconstruct scan.mcap again: 764 thermal frames were left out"));
 }
@@ -124,6 +124,23 @@ TEST(StatusReporterTest, F43ARecordingThatPausesSaysSoAndThatGoesOnWhatItLacks) 
   recording.paused = false;
   EXPECT_THAT(StatusText(situation),
               AllOf(HasSubstr(" | RECORDING LACKS 7 frames"), Not(HasSubstr("NOT RECORDING"))));
+}
+
+TEST(StatusReporterTest, F31AMissingOutputFolderIsSaidBeforeAScanToo) {
+  GroundSituation situation;
+  situation.folder_problem = "creating the output folder /media/disk: Read-only file system";
+  EXPECT_EQ(StatusText(situation),
+            "waiting for a rig | NO OUTPUT FOLDER: creating the output folder /media/disk: "
+            "Read-only file system");
+}
+
+TEST(StatusReporterTest, F28AdviceThatIsOldWhenItArrivesIsSaid) {
+  GroundSituation situation = Scanning();
+  situation.edge = EdgeStatus();
+  situation.edge->feedback = {.count = 100, .p50_s = 0.1, .p99_s = 3.0};
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr(" old")));
+  situation.edge->feedback.p50_s = 2.322;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | advice is 2.3 s old when it reaches the rig"));
 }
 
 TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "common/messages/messages.h"
 #include "common/transport/refusal.h"
@@ -22,6 +23,9 @@ struct StreamCounters {
   /// Samples that were not used; the numbers that only they had stay missing.
   std::uint64_t refused = 0;
   RefusalCounts refused_by_cause{};
+  /// Frames that the rig says it did not publish, as of its newest status.
+  std::uint64_t captured_by_rig = 0;
+  std::vector<DropCount> dropped_by_rig{};
 };
 
 /// The rig's wall clock in a session: what the rig says of it, and how it compares with ours.

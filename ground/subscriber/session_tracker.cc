@@ -1,6 +1,7 @@
 #include "ground/subscriber/session_tracker.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 namespace isotherm {
@@ -10,17 +11,20 @@ namespace {
 /// edges that were started again in between.
 constexpr std::size_t kMaxEntries = 8;
 
-/// `published` is what the edge said, `final` whether it is its last word. Until then holes may be
+/// `rig` is what the edge said, `final` whether it is its last word. Until then holes may be
 /// frames that are still on their way or that the edge dropped itself: they count as missing.
-StreamCounters MakeCounters(const StreamTally& tally, std::uint64_t published, bool final) {
+StreamCounters MakeCounters(const StreamTally& tally, const StreamStatus& rig, bool final) {
   StreamCounters counters;
   counters.received = tally.received;
-  counters.published = std::max(published, final ? tally.received : tally.next);
+  counters.published = std::max(rig.published, final ? tally.received : tally.next);
   counters.missing = counters.published - counters.received;
   counters.late = tally.late;
   counters.duplicates = tally.duplicates;
   counters.refused_by_cause = tally.refused;
   counters.refused = std::accumulate(tally.refused.begin(), tally.refused.end(), std::uint64_t{0});
+  counters.captured_by_rig = rig.captured;
+  std::ranges::copy_if(rig.dropped, std::back_inserter(counters.dropped_by_rig),
+                       [](const DropCount& drop) { return drop.frames > 0; });
   return counters;
 }
 
@@ -52,8 +56,8 @@ void SessionTracker::OnStatus(const EdgeStatus& status, SteadyTime now) {
   const Entry* known = Find(status.session);
   if (known != nullptr && known->ended) return;  // Its last word was said; repeats are no activity.
   Entry& entry = Touch(status.session, now);
-  entry.depth_published = status.depth.published;
-  entry.thermal_published = status.thermal.published;
+  entry.depth = status.depth;
+  entry.thermal = status.thermal;
   entry.feedback = status.feedback;
   entry.ended = status.scan_state == ScanState::kEnded;
 }
@@ -84,8 +88,8 @@ SessionCounters SessionTracker::Counters(const StreamTally& depth,
   counters.closed = entry->closed;
   counters.feedback = entry->feedback;
   counters.clock = entry->clock;
-  counters.depth = MakeCounters(depth, entry->depth_published, entry->ended);
-  counters.thermal = MakeCounters(thermal, entry->thermal_published, entry->ended);
+  counters.depth = MakeCounters(depth, entry->depth, entry->ended);
+  counters.thermal = MakeCounters(thermal, entry->thermal, entry->ended);
   return counters;
 }
 

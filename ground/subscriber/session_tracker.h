@@ -48,8 +48,8 @@ class SessionTracker {
   /// Holds the newest that the edge said about a session.
   struct Entry {
     std::uint64_t session = 0;
-    std::uint64_t depth_published = 0;
-    std::uint64_t thermal_published = 0;
+    StreamStatus depth{};
+    StreamStatus thermal{};
     FeedbackLatency feedback{};
     std::optional<SessionClock> clock{};
     bool ended = false;

@@ -55,6 +55,19 @@ TEST_F(SessionTrackerTest, F19PublishedIsReceivedPlusMissingAtTheEnd) {
   EXPECT_EQ(counters.depth.missing, 1U);
 }
 
+TEST_F(SessionTrackerTest, F28WhatTheRigDroppedItselfIsKept) {
+  EdgeStatus status = Status(1, ScanState::kEnded, 1037, 5);
+  status.depth.captured = 1800;
+  status.depth.dropped = {{"rejected", 0}, {"queue full", 763}};
+  sessions_.OnStatus(status, now_);
+  const SessionCounters counters = sessions_.Counters(Tally(1, 1037, 1800), Tally(1, 5, 5));
+  EXPECT_EQ(counters.depth.captured_by_rig, 1800U);
+  ASSERT_EQ(counters.depth.dropped_by_rig.size(), 1U) << "what happened, not what could";
+  EXPECT_EQ(counters.depth.dropped_by_rig[0].reason, "queue full");
+  EXPECT_EQ(counters.depth.dropped_by_rig[0].frames, 763U);
+  EXPECT_TRUE(counters.thermal.dropped_by_rig.empty());
+}
+
 TEST_F(SessionTrackerTest, TheLastStatusSaysHowSoonFeedbackArrived) {
   EdgeStatus status = Status(1, ScanState::kScanning, 9, 5);
   status.feedback = {.count = 10, .p50_s = 0.05, .p99_s = 0.10};

@@ -44,13 +44,13 @@ Image<std::int32_t> MakeRectification(const CameraModel& camera) {
 
 Status Validate(const PreprocessorOptions& o) {
   for (const auto& [name, is_set, depth_m] :
-       {std::tuple("min_depth_m", o.has_min_depth_m(), o.min_depth_m()),
-        std::tuple("max_depth_m", o.has_max_depth_m(), o.max_depth_m())}) {
+       {std::tuple("min_depth_m", o.expert().has_min_depth_m(), o.expert().min_depth_m()),
+        std::tuple("max_depth_m", o.expert().has_max_depth_m(), o.expert().max_depth_m())}) {
     if (is_set && !(depth_m >= 0.0 && depth_m <= 100.0))
       return InvalidArgument(
-          fmt::format("preprocessor.{} must be 0..100 m, got {}", name, depth_m));
+          fmt::format("preprocessor.expert.{} must be 0..100 m, got {}", name, depth_m));
   }
-  if (o.has_min_depth_m() && o.has_max_depth_m())
+  if (o.expert().has_min_depth_m() && o.expert().has_max_depth_m())
     ISOTHERM_RETURN_IF_ERROR(CheckRange(o, DepthSensorModel()));
   return Validate(o.expert());
 }
@@ -72,15 +72,15 @@ Status Validate(const PreprocessorExpertOptions& o) {
 }
 
 DepthRange RangeOf(const PreprocessorOptions& o, const DepthSensorModel& sensor) {
-  return {.min_m = o.has_min_depth_m() ? o.min_depth_m() : sensor.min_depth_m,
-          .max_m = o.has_max_depth_m() ? o.max_depth_m() : sensor.max_depth_m};
+  return {.min_m = o.expert().has_min_depth_m() ? o.expert().min_depth_m() : sensor.min_depth_m,
+          .max_m = o.expert().has_max_depth_m() ? o.expert().max_depth_m() : sensor.max_depth_m};
 }
 
 Status CheckRange(const PreprocessorOptions& o, const DepthSensorModel& sensor) {
   const DepthRange range = RangeOf(o, sensor);
   if (range.min_m < range.max_m) return OkStatus();
   return InvalidArgument(fmt::format(
-      "preprocessor: need min_depth_m < max_depth_m, got {} m and {} m (what is not set "
+      "preprocessor.expert: need min_depth_m < max_depth_m, got {} m and {} m (what is not set "
       "is the depth camera's)",
       range.min_m, range.max_m));
 }
@@ -164,17 +164,17 @@ void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& p
   });
 }
 
-void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
-                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps) {
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, const NormalRule& rule,
+                     ThreadPool& pool, SurfaceMaps& maps) {
   maps.Resize(depth_m.width(), depth_m.height());
   const SurfaceMapArgs args{&depth_m,
                             static_cast<float>(camera.fx),
                             static_cast<float>(camera.fy),
                             static_cast<float>(camera.cx),
                             static_cast<float>(camera.cy),
-                            reach,
-                            max_step_ratio * static_cast<float>(reach),
-                            noise_at_1m};
+                            rule.reach_px,
+                            rule.max_step_ratio * static_cast<float>(rule.reach_px),
+                            rule.noise_at_1m};
   pool.ParallelForRows(depth_m.height(), kRowsPerTask,
                        [&](int y) { SurfaceMapRow(args, y, maps); });
 }
@@ -230,7 +230,7 @@ const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadP
     if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
     const CameraModel camera = camera_.Downscaled(level);
     const float step = StepPerPixel(camera, options_.expert().max_surface_angle_deg());
-    MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, prepared_.noise_at_1m,
+    MakeSurfaceMaps(filtered_m_[level], camera, {kNormalReach[level], step, prepared_.noise_at_1m},
                     pool, prepared_.maps[level]);
     finer_step = step;
   }

@@ -88,11 +88,17 @@ float StepPerPixel(const CameraModel& camera, double angle_deg);
 void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
                 Image<float>& half_m);
 
-/// Vertices and normals in camera coordinates. Normals from central differences over +-`reach`
-/// pixels; NaN where a neighbour is missing, further away than `max_step_ratio` times the depth per
-/// pixel of reach, or where the surface bends there by more than a slope and noise explain.
-/// `noise_at_1m` (metres) grows with depth squared.
-void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
-                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps);
+/// Says which neighbours of a pixel make its normal.
+struct NormalRule {
+  int reach_px = 1;             ///< Their distance.
+  float max_step_ratio = 0.0F;  ///< Largest step per pixel on one surface, as a part of the depth.
+  float noise_at_1m = 0.0F;     ///< Metres; grows with depth squared.
+};
+
+/// Vertices and normals in camera coordinates. Normals from central differences; NaN where a
+/// neighbour is missing or on another surface, or where the surface bends there by more than a
+/// slope and noise explain.
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, const NormalRule& rule,
+                     ThreadPool& pool, SurfaceMaps& maps);
 
 }  // namespace isotherm

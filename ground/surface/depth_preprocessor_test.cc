@@ -201,7 +201,7 @@ TEST_F(DepthPreprocessorTest, FilterSmoothsNoiseButNotAnEdge) {
       frame.depth_raw.At(x, y) = static_cast<std::uint16_t>(std::lround(truth + noise(random)));
     }
   }
-  options_.set_min_depth_m(0.1);
+  options_.mutable_expert()->set_min_depth_m(0.1);
   const PreparedDepth& depth = Process(frame);
   const SurfaceMaps& maps = depth.maps[0];
   double squared = 0.0;

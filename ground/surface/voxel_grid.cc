@@ -89,14 +89,15 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
   const Eigen::Vector3d blocks = BlocksAlongAxes(o, o.voxel_size_m());
   const double table_bytes = TableBytes(blocks);
   const double allowed_bytes =
-      std::min(static_cast<double>(o.max_memory_bytes()) * kTableFraction, kMaxTableBytes);
+      std::min(static_cast<double>(o.expert().max_memory_bytes()) * kTableFraction, kMaxTableBytes);
   if (!(table_bytes <= allowed_bytes)) {
-    return Err(ResourceExhausted(fmt::format(
-        "a volume of {} needs {} for its block table alone, {} are allowed "
-        "(a quarter of volume.max_memory_bytes, 8 GiB at most): use voxels of {:.4g} m or more, or "
-        "a smaller volume",
-        DescribeSize(o), DescribeBytes(table_bytes), DescribeBytes(allowed_bytes),
-        FittingVoxel(o, allowed_bytes))));
+    return Err(ResourceExhausted(
+        fmt::format("a volume of {} needs {} for its block table alone, {} are allowed "
+                    "(a quarter of volume.expert.max_memory_bytes, 8 GiB at most): use voxels of "
+                    "{:.4g} m or more, or "
+                    "a smaller volume",
+                    DescribeSize(o), DescribeBytes(table_bytes), DescribeBytes(allowed_bytes),
+                    FittingVoxel(o, allowed_bytes))));
   }
   VoxelGrid grid;
   grid.min_m = {o.expert().min_x_m(), o.expert().min_y_m(), o.expert().min_z_m()};
@@ -109,7 +110,7 @@ std::int32_t MaxResidentBlocks(const VolumeOptions& options, const VoxelGrid& gr
   const double table_bytes = static_cast<double>(grid.block_count()) * sizeof(std::int32_t);
   const double block_bytes = kBlockVoxels * kBytesPerVoxel;
   const double fitting =
-      (static_cast<double>(options.max_memory_bytes()) - table_bytes) / block_bytes;
+      (static_cast<double>(options.expert().max_memory_bytes()) - table_bytes) / block_bytes;
   const double limit = std::min(static_cast<double>(grid.block_count()), fitting);
   return static_cast<std::int32_t>(
       std::clamp(limit, 1.0, static_cast<double>(kMaxAddressableBlocks)));

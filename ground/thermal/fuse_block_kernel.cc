@@ -184,14 +184,13 @@ HWY_INLINE void Note(int i, VI fresh, VI flags, MI noted, MI takes, BlockMeasure
 // sigmas bytes in rows of 8 voxels. Fast: most vectors have no voxel near the surface and end at
 // their first load; a pixel is one load of 16 bytes and a word; what was measured is written
 // packed, so that the slow part (MeasurementRecorder) meets these voxels only.
-void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
-               const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
+void FuseBlock(const FusionKernelArgs& a, const BlockVoxels& block, FusionKernelCounts& counts,
                BlockMeasurements* measured) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   constexpr int kLayer = BlockLayout::kLayerVoxels;
-  const auto* distances = reinterpret_cast<const std::int32_t*>(tsdf);
-  auto* temperatures = reinterpret_cast<std::int32_t*>(thermal);
-  const BlockPoints points(a.axes, first);
+  const auto* distances = reinterpret_cast<const std::int32_t*>(block.tsdf);
+  auto* temperatures = reinterpret_cast<std::int32_t*>(block.thermal);
+  const BlockPoints points(a.axes, block.first);
   HWY_ALIGN std::int32_t pixels[hn::MaxLanes(d)];
   const VI conditions = hn::Set(di, ThermalLayout::kConditionMask);
   const VI all_good = hn::Set(di, kAllGood);
@@ -227,7 +226,7 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
     const MI good = hn::And(assignable, hn::Eq(classes, all_good));
     VI stored = TemperatureCode(record, place);
     if (a.validate) {
-      MI known_better = IsKnownBetter(sigmas, i, flags, old, stored);
+      MI known_better = IsKnownBetter(block.sigmas, i, flags, old, stored);
       if (a.keep_lowest) known_better = hn::AndNot(good, known_better);
       assign = hn::AndNot(KeepsOld(old, classes, known_better), assign);
     }
@@ -251,10 +250,9 @@ namespace isotherm {
 
 HWY_EXPORT(FuseBlock);
 
-void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
-               const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
+void FuseBlock(const FusionKernelArgs& args, const BlockVoxels& block, FusionKernelCounts& counts,
                BlockMeasurements* measured) {
-  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, sigmas, thermal, counts, measured);
+  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, block, counts, measured);
 }
 
 }  // namespace isotherm

@@ -108,7 +108,7 @@ class FuseBlockTest : public ::testing::Test {
     const Words before = thermal_;
     FusionKernelCounts counts;
     BlockMeasurements measured;
-    FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts,
+    FuseBlock(args_, {first_.data(), tsdf_.data(), block_sigmas_, thermal_.data()}, counts,
               &measured);
     ASSERT_EQ(thermal_.back(), before.back()) << "wrote beyond the block";
     const Eigen::Matrix3d axes =
@@ -228,7 +228,7 @@ TEST_F(FuseBlockTest, UnderEqualClassesTheSmallerUncertaintyStaysIfTheyAgree) {
         for (std::size_t row = 0; row < block_sigmas_.rows.size(); ++row)
           block_sigmas_.rows[row] = &sigmas_[8 * row];
         FusionKernelCounts counts;
-        FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts,
+        FuseBlock(args_, {first_.data(), tsdf_.data(), block_sigmas_, thermal_.data()}, counts,
                   nullptr);
         assigned += counts.assigned;
       }
@@ -257,7 +257,7 @@ TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
         first_[axis] = bad;
         const Words before = thermal_;
         FusionKernelCounts counts;
-        FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts,
+        FuseBlock(args_, {first_.data(), tsdf_.data(), block_sigmas_, thermal_.data()}, counts,
                   nullptr);
         EXPECT_EQ(thermal_, before) << bad << " along axis " << axis;
         EXPECT_EQ(counts.assigned, 0);
@@ -273,7 +273,8 @@ TEST_F(FuseBlockTest, AnImageThatShowsNothingChangesNothing) {
     RearrangeBlock();
     const Words before = thermal_;
     FusionKernelCounts counts;
-    FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts, nullptr);
+    FuseBlock(args_, {first_.data(), tsdf_.data(), block_sigmas_, thermal_.data()}, counts,
+              nullptr);
     EXPECT_EQ(thermal_, before);
     EXPECT_EQ(counts.considered, 0);
   });

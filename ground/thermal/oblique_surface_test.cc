@@ -53,7 +53,7 @@ TEST_P(ObliqueSurfaceTest, EverySurfaceVoxelInViewGetsATemperature) {
   ThermalOptions options;
   options.mutable_angle()->set_max_deg(60.0);  // The largest tilt, and what the view adds to it.
   ThermalFuser(options, camera, ThermalSensorModel(), 0.0F)
-      .Fuse(frame, T_map_camera_, testing::SmallDepthCamera(), T_map_camera_, *tsdf_, pool,
+      .Fuse({frame, T_map_camera_, testing::SmallDepthCamera(), T_map_camera_}, {}, *tsdf_, pool,
             *thermal_);
   int on_surface = 0, measured = 0, away = 0;
   for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {

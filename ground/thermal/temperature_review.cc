@@ -58,7 +58,7 @@ bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal,
 
 TemperatureReview::TemperatureReview(const ThermalOptions& options,
                                      const ThermalSensorModel& sensor)
-    : limits_(options, sensor), keep_bad_(options.keep_bad()) {}
+    : limits_(options, sensor), keep_bad_(options.expert().keep_bad()) {}
 
 bool TemperatureReview::IsBesideSteepFace(const ConditionRecord& record,
                                           const Eigen::Vector3f& normal, const TsdfVolume& tsdf,

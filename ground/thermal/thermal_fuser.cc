@@ -1,6 +1,7 @@
 #include "ground/thermal/thermal_fuser.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -71,6 +72,29 @@ void CopyVector(const Vector& from, float* to) {
   std::copy_n(single.data(), 3, to);
 }
 
+void SeeWhatDepthCameraSees(const PosedThermalFrame& posed, PixelRowArgs& args) {
+  const RigidTransform T_depth_map = posed.T_map_depth.inverse();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_map.linear().cast<float>();
+  std::copy_n(R.data(), 9, args.R_depth);
+  CopyVector(T_depth_map.translation(), args.t_depth);
+  const CameraModel& camera = posed.depth_camera;
+  args.depth_fx = static_cast<float>(camera.fx);
+  args.depth_fy = static_cast<float>(camera.fy);
+  args.depth_cx = static_cast<float>(camera.cx);
+  args.depth_cy = static_cast<float>(camera.cy);
+  args.depth_width = static_cast<float>(camera.width);
+  args.depth_height = static_cast<float>(camera.height);
+}
+
+/// A depth camera of one pixel in which every point lies.
+void SeeAll(PixelRowArgs& args) {
+  std::fill_n(args.R_depth, 9, 0.0F);
+  std::copy_n(std::array{0.0F, 0.0F, 1.0F}.data(), 3, args.t_depth);
+  args.depth_fx = args.depth_fy = 1.0F;
+  args.depth_cx = args.depth_cy = 0.0F;
+  args.depth_width = args.depth_height = 1.0F;
+}
+
 }  // namespace
 
 FusionReport& FusionReport::operator+=(const FusionReport& other) {
@@ -135,11 +159,10 @@ void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVo
   });
 }
 
-PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
-                                   const CameraModel& depth_camera,
-                                   const RigidTransform& T_map_depth,
+PixelRowArgs ThermalFuser::RowArgs(const PosedThermalFrame& posed,
                                    const CaptureConditions& capture) const {
   const CameraModel& camera = rectifier_.ideal_camera();
+  const RigidTransform& T_map_thermal = posed.T_map_thermal;
   PixelRowArgs args{};
   args.distance_stride = distances_m_.width();
   args.celsius_stride = celsius_.width();
@@ -150,16 +173,11 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   std::copy_n(z_axis.data(), 4, args.z_axis);
   CopyVector(T_map_thermal.linear().col(0), args.x_axis);
   CopyVector(T_map_thermal.linear().col(1), args.y_axis);
-  const RigidTransform T_depth_map = T_map_depth.inverse();
-  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_map.linear().cast<float>();
-  std::copy_n(R.data(), 9, args.R_depth);
-  CopyVector(T_depth_map.translation(), args.t_depth);
-  args.depth_fx = static_cast<float>(depth_camera.fx);
-  args.depth_fy = static_cast<float>(depth_camera.fy);
-  args.depth_cx = static_cast<float>(depth_camera.cx);
-  args.depth_cy = static_cast<float>(depth_camera.cy);
-  args.depth_width = static_cast<float>(depth_camera.width);
-  args.depth_height = static_cast<float>(depth_camera.height);
+  if (capture.surface_is_finished) {
+    SeeAll(args);
+  } else {
+    SeeWhatDepthCameraSees(posed, args);
+  }
   args.occlusion_tolerance_m =
       static_cast<float>(options_.expert().occlusion().parallax_tolerance_m());
   args.distance_min_m = limits_.distance_min_m;
@@ -259,33 +277,18 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
 
 void ThermalFuser::SelectBlocks(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf) {
   const CameraModel& camera = rectifier_.ideal_camera();
-  const BlockToCamera to_camera(tsdf.grid(), T_map_thermal.inverse());
-  const float radius = BlockRadius(tsdf.grid());
-  const float reach = radius + static_cast<float>(options_.expert().vertex_distance_vox() *
-                                                  tsdf.grid().voxel_size_m);
-  const auto fx = static_cast<float>(camera.fx);
-  const auto fy = static_cast<float>(camera.fy);
-  const auto cx = static_cast<float>(camera.cx);
-  const auto cy = static_cast<float>(camera.cy);
-  const auto tile_of = [](float pixel, int tiles) { return TileOf(pixel, kTile, tiles); };
+  const VoxelGrid& grid = tsdf.grid();
+  const float reach_m =
+      BlockRadius(grid) +
+      static_cast<float>(options_.expert().vertex_distance_vox() * grid.voxel_size_m);
+  const BlockTiles tiles(grid, camera, T_map_thermal,
+                         {kTile, nearest_m_.width(), nearest_m_.height()});
+  const auto surface_passes = [&](int x, int y, float depth_m) {
+    return depth_m - reach_m <= farthest_m_.At(x, y) && depth_m + reach_m >= nearest_m_.At(x, y);
+  };
   blocks_.clear();
   for (const std::int32_t block : visible_.Find(tsdf, camera, T_map_thermal)) {
-    const Eigen::Vector3f p = to_camera.Centre(tsdf.block_coordinates(block));
-    if (p.z() < 2.0F * radius) continue;
-    // Keep blocks through which the visible surface passes.
-    // The corners of a block may be nearer than its centre, and project further out.
-    const float extent = radius * 1.5F / (p.z() - radius);
-    const float u = fx * p.x() / p.z() + cx;
-    const float v = fy * p.y() / p.z() + cy;
-    const int x1 = tile_of(u + fx * extent, nearest_m_.width());
-    const int y1 = tile_of(v + fy * extent, nearest_m_.height());
-    bool on_surface = false;
-    for (int y = tile_of(v - fy * extent, nearest_m_.height()); y <= y1 && !on_surface; ++y) {
-      for (int x = tile_of(u - fx * extent, nearest_m_.width()); x <= x1 && !on_surface; ++x) {
-        on_surface = p.z() - reach <= farthest_m_.At(x, y) && p.z() + reach >= nearest_m_.At(x, y);
-      }
-    }
-    if (on_surface) blocks_.push_back(block);
+    if (tiles.AnyOf(tsdf.block_coordinates(block), surface_passes)) blocks_.push_back(block);
   }
 }
 
@@ -313,21 +316,21 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
       TsdfVoxel::kTsdfScale *
       std::min(1.0, kNoiseMargin * max_distance_m / tsdf.truncation_distance_m()));
   args.validate = options_.expert().validation();
-  args.keep_bad = options_.keep_bad();
+  args.keep_bad = options_.expert().keep_bad();
   args.keep_lowest = options_.expert().policy() == LOWEST_GOOD;
   return args;
 }
 
-FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_map_thermal,
-                                const CameraModel& depth_camera, const RigidTransform& T_map_depth,
-                                const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
-                                const CaptureConditions& capture) {
+FusionReport ThermalFuser::Fuse(const PosedThermalFrame& posed, const CaptureConditions& capture,
+                                const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal) {
+  const ThermalFrame& frame = posed.frame;
+  const RigidTransform& T_map_thermal = posed.T_map_thermal;
   CHECK(frame.valid);
-  CHECK(IsRigid(T_map_thermal) && IsRigid(T_map_depth));
+  CHECK(IsRigid(T_map_thermal) && IsRigid(posed.T_map_depth));
   rectifier_.Rectify(frame.temperature_raw, frame.scale, apron_, pool, celsius_);
   CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;
-  PixelRowArgs row_args = RowArgs(T_map_thermal, depth_camera, T_map_depth, capture);
+  PixelRowArgs row_args = RowArgs(posed, capture);
   row_args.sigma = UncertaintyArgs(capture, tsdf.grid().voxel_size_m);
   MakePixels(row_args, capture, pool, report);
   SelectBlocks(T_map_thermal, tsdf);
@@ -352,9 +355,10 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
           (T_thermal_map * tsdf.grid().VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
               .cast<float>();
       measured.count = 0;
-      FuseBlock(args, first.data(), &tsdf.voxels(block).front().bits, SigmasOf(thermal, block),
-                &thermal.voxels(block).front().bits, counts,
-                thermal.records() != nullptr ? &measured : nullptr);
+      FuseBlock(args,
+                {first.data(), &tsdf.voxels(block).front().bits, SigmasOf(thermal, block),
+                 &thermal.voxels(block).front().bits},
+                counts, thermal.records() != nullptr ? &measured : nullptr);
       if (measured.count > 0) recorder.Record(measured, first, block, thermal);
       // Spread over the frames by the block's number, so that each frame reviews about as many.
       if ((static_cast<std::uint32_t>(block) + frames_) % kFramesBetweenReviews == 0)

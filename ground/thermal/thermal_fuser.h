@@ -52,6 +52,17 @@ struct CaptureConditions {
   const LineOfSightOcclusion* line_of_sight =
       nullptr;  ///< Space that the depth camera sees through.
   NucAge nuc;
+  /// All that was ever scanned is in the model already: surface that the depth camera does not see
+  /// at the time takes temperatures, too.
+  bool surface_is_finished = false;
+};
+
+/// A valid thermal frame and where both cameras were.
+struct PosedThermalFrame {
+  const ThermalFrame& frame;
+  const RigidTransform& T_map_thermal;  ///< When the frame was captured.
+  const CameraModel& depth_camera;
+  const RigidTransform& T_map_depth;  ///< At about the same time.
 };
 
 /// Assigns temperatures to the surface that both cameras see (algorithms 4 to 6). What the thermal
@@ -64,13 +75,9 @@ class ThermalFuser {
   ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera,
                const ThermalSensorModel& sensor, float min_weight);
 
-  /// `T_map_thermal` is the thermal camera's pose when `frame` was captured, `T_map_depth` that
-  /// of the depth camera at about the same time. `frame` must be valid and have the camera's size
-  /// (CHECK).
-  FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_map_thermal,
-                    const CameraModel& depth_camera, const RigidTransform& T_map_depth,
-                    const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
-                    const CaptureConditions& capture = {});
+  /// The frame must be valid and have the camera's size (CHECK).
+  FusionReport Fuse(const PosedThermalFrame& posed, const CaptureConditions& capture,
+                    const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal);
 
   /// The final review of all temperatures (TemperatureReview), once at the end: it also drops those
   /// beside steep faces, which the reviews of what is in view in Fuse do not. Returns how many were
@@ -82,8 +89,7 @@ class ThermalFuser {
  private:
   /// Casts what the thermal camera sees of the model, into surface_ and distances_m_.
   void CastSurface(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
-  PixelRowArgs RowArgs(const RigidTransform& T_map_thermal, const CameraModel& depth_camera,
-                       const RigidTransform& T_map_depth, const CaptureConditions& capture) const;
+  PixelRowArgs RowArgs(const PosedThermalFrame& posed, const CaptureConditions& capture) const;
   SigmaArgs UncertaintyArgs(const CaptureConditions& capture, double voxel_m) const;
   void MakePixels(const PixelRowArgs& args, const CaptureConditions& capture, ThreadPool& pool,
                   FusionReport& report);

@@ -169,10 +169,15 @@ struct BlockSigmas {
   static constexpr int kRows = kBlockVoxels / kRowVoxels;
   std::array<const std::uint8_t*, kRows> rows{};
 };
-/// Algorithms 5 and 6 for the 512 voxels of a block whose first voxel's centre is at `first`
-/// (thermal camera coordinates, metres). `measured` may be nullptr.
-void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
-               const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
+/// The 512 voxels of a block.
+struct BlockVoxels {
+  const float* first;  ///< The first voxel's centre in thermal camera coordinates, metres.
+  const std::uint32_t* tsdf;
+  const BlockSigmas& sigmas;
+  std::uint32_t* thermal;  ///< Is changed.
+};
+/// Algorithms 5 and 6 for the voxels of a block. `measured` may be nullptr.
+void FuseBlock(const FusionKernelArgs& args, const BlockVoxels& block, FusionKernelCounts& counts,
                BlockMeasurements* measured);
 
 }  // namespace isotherm

@@ -104,9 +104,10 @@ Status Validate(const ThermalDisagreementOptions& o) {
 }
 
 Status Validate(const ThermalExpertOptions& o) {
-  if (!(o.vertex_distance_vox() > 0.0 && o.max_wait_s() >= 0.0 && o.max_wait_s() <= 10.0)) {
+  if (!(o.vertex_distance_vox() > 0.0 && o.max_depth_gap_s() >= 0.0 &&
+        o.max_depth_gap_s() <= 10.0)) {
     return InvalidArgument(
-        "thermal.expert: vertex_distance_vox must be positive, max_wait_s 0..10 s");
+        "thermal.expert: vertex_distance_vox must be positive, max_depth_gap_s 0..10 s");
   }
   if (!(o.max_time_sigma_s() > 0.0)) {
     return InvalidArgument(fmt::format("thermal.expert.max_time_sigma_s must be positive, got {} s",

@@ -107,7 +107,7 @@ TEST_F(ThermalRulesTest, BadConditionsLeaveTheirClassesAndNoTemperature) {
     EXPECT_TRUE(std::isnan(voxel.celsius()));
   });
   EXPECT_GT(assessed, 1'000);
-  options_.set_keep_bad(true);
+  options_.mutable_expert()->set_keep_bad(true);
   FuseFrame(options_, Even(20.0));
   ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
     EXPECT_NEAR(voxel.celsius(), 20.0, 0.02);

@@ -250,7 +250,7 @@ TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
   frame.temperature_raw.Fill(0);
   const FusionReport report =
       ThermalFuser(ThermalOptions(), thermal_camera_, sensor_, 0.0F)
-          .Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_);
+          .Fuse({frame, T_map_thermal_, depth_camera_, T_map_depth_}, {}, *tsdf_, pool_, *thermal_);
   EXPECT_EQ(report.assigned, 0);
   EXPECT_GT(report.considered, 0);
 }
@@ -263,9 +263,9 @@ TEST_F(ThermalFuserTest, APoseThatIsNoneIsTheCallersFault) {
       RigidTransform T_map_depth = T_map_depth_;
       (of_thermal ? T_map_thermal : T_map_depth).matrix()(2, 2) = bad;
       ThermalFuser fuser(ThermalOptions(), thermal_camera_, sensor_, 0.0F);
-      EXPECT_DEATH(
-          fuser.Fuse(frame, T_map_thermal, depth_camera_, T_map_depth, *tsdf_, pool_, *thermal_),
-          "IsRigid");
+      EXPECT_DEATH(fuser.Fuse({frame, T_map_thermal, depth_camera_, T_map_depth}, {}, *tsdf_, pool_,
+                              *thermal_),
+                   "IsRigid");
     }
   }
 }

@@ -33,12 +33,6 @@ bool ThermalVolume::Commit(std::int32_t blocks) {
 
 namespace {
 
-/// Where a voxel is: block and index in it.
-struct VoxelPlace {
-  std::int32_t block = TsdfVolume::kNoBlock;
-  int index = 0;
-};
-
 VoxelPlace PlaceOf(const TsdfVolume& tsdf, const GridIndex& voxel) {
   if ((voxel.array() < 0).any()) return {};
   return {tsdf.Find(voxel / kBlockSide), BlockLayout::Element(voxel.x(), voxel.y(), voxel.z())};
@@ -79,21 +73,22 @@ VoxelPlace PlaceFor(const TsdfVolume& tsdf, const ThermalVolume& thermal,
 
 }  // namespace
 
-void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int source_voxel,
-                 const Eigen::Matrix3f& R_target_source, std::int32_t block, int voxel,
-                 ThermalVolume& target) {
+void AdoptRecord(const ThermalVolume& source, const VoxelPlace& from,
+                 const Eigen::Matrix3f& R_target_source, ThermalVolume& target,
+                 const VoxelPlace& to) {
   if (source.records() == nullptr || target.records() == nullptr) return;
-  const RecordRow* from = source.records()->Find(source_block, source_voxel / RecordRow::kVoxels);
-  if (from == nullptr) return;
-  RecordRow& to = target.records()->Row(block, voxel / RecordRow::kVoxels);
-  ConditionRecord& conditions = to.conditions[voxel % RecordRow::kVoxels];
-  conditions = from->conditions[source_voxel % RecordRow::kVoxels];
+  const int from_row = from.index / RecordRow::kVoxels,
+            from_column = from.index % RecordRow::kVoxels;
+  const int to_row = to.index / RecordRow::kVoxels, to_column = to.index % RecordRow::kVoxels;
+  const RecordRow* old_row = source.records()->Find(from.block, from_row);
+  if (old_row == nullptr) return;
+  RecordRow& new_row = target.records()->Row(to.block, to_row);
+  ConditionRecord& conditions = new_row.conditions[to_column];
+  conditions = old_row->conditions[from_column];
   // Directions are in the coordinates of their sub-map.
   conditions.direction = EncodeDirection(R_target_source * DecodeDirection(conditions.direction));
-  to.disagreement[voxel % RecordRow::kVoxels] =
-      from->disagreement[source_voxel % RecordRow::kVoxels];
-  target.records()->Sigmas(block, voxel / RecordRow::kVoxels)[voxel % RecordRow::kVoxels] =
-      source.sigma_code(source_block, source_voxel);
+  new_row.disagreement[to_column] = old_row->disagreement[from_column];
+  target.records()->Sigmas(to.block, to_row)[to_column] = source.sigma_code(from.block, from.index);
 }
 
 std::uint8_t ThermalVolume::sigma_code(std::int32_t block, int voxel) const {

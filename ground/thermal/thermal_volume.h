@@ -117,11 +117,17 @@ struct PointMeasurement {
   float sigma_k = NAN;  ///< Standard uncertainty of the apparent temperature; NaN = not known.
 };
 
-/// Copies the record of a voxel to one of another volume, whose coordinate frame is turned by
+/// Where a voxel is kept.
+struct VoxelPlace {
+  std::int32_t block = TsdfVolume::kNoBlock;
+  int index = 0;  ///< Within the block.
+};
+
+/// Copies the record of a voxel of `source` to one of `target`, whose coordinate frame is turned by
 /// R_target_source, as far as both volumes keep any.
-void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int source_voxel,
-                 const Eigen::Matrix3f& R_target_source, std::int32_t block, int voxel,
-                 ThermalVolume& target);
+void AdoptRecord(const ThermalVolume& source, const VoxelPlace& from,
+                 const Eigen::Matrix3f& R_target_source, ThermalVolume& target,
+                 const VoxelPlace& to);
 
 /// The measurement that belongs to a surface point: of the voxel the point lies in, or, if nothing
 /// was ever tried there, of the nearest measured one among the 26 around it. Unmeasured if none.

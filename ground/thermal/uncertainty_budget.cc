@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/units.h"
 #include "ground/thermal/voxel_layout.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kSecondsPerMinute = 60.0;
 /// Mean error of reprojection between the cameras where the rig file has none (thesis table 5.1).
 constexpr double kReprojectionError_px = 0.141;
 
@@ -45,7 +45,7 @@ UncertaintyBudget BudgetOf(const FrameUncertainty& frame, const PixelUncertainty
 }
 
 double DriftKelvin(const CameraUncertainty& camera, const NucAge& nuc) {
-  const double minutes = nuc.seconds_since.value_or(nuc.seconds_followed) / kSecondsPerMinute;
+  const double minutes = nuc.seconds_since.value_or(nuc.seconds_followed) / kSPerMin;
   const double pattern_k = camera.pattern_drift_k_per_sqrt_min * std::sqrt(minutes);
   // A rate that lies anywhere between its limits: half their distance over the root of 3.
   const double housing_k = nuc.housing_change_k

@@ -41,7 +41,7 @@ std::optional<RigidTransform> LoopCloser::VerifyIn(int other, const PreparedDept
     if (result.tracked()) return result.T_map_depth;
   }
   // Its place is not known, or the rig has drifted further than the tracker can pull it back.
-  if (!options_.relocaliser().enabled()) return std::nullopt;
+  if (!options_.relocaliser().expert().enabled()) return std::nullopt;
   const auto guess = map.relocaliser->Find(
       depth, *map.tsdf, static_cast<float>(options_.raycast().expert().min_weight()), pool);
   if (!guess) return std::nullopt;

@@ -169,7 +169,7 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& 
   // Every fourth lost frame looks where the rig was lost, the others around known poses. More: a
   // hand before the camera costs more frames; fewer: the search is slower. Not tuned.
   constexpr int kTurns = 4;
-  const bool looks_back = lost_frames_++ % kTurns == 0 || !relocaliser_options_.enabled();
+  const bool looks_back = lost_frames_++ % kTurns == 0 || !relocaliser_options_.expert().enabled();
   if (looks_back && view_.maps.width() > 0) {
     // Where it was lost: a hand before the camera, or a rig that swings back.
     const RigidTransform& last = view_.T_map_depth;
@@ -177,7 +177,8 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& 
     if (result.tracked() && !IsConvincing(result)) result.lost = LostReason::kNotFound;
     return result;
   }
-  if (!relocaliser_options_.enabled() || depth.valid_pixels < kMinTrackedPixels) return result;
+  if (!relocaliser_options_.expert().enabled() || depth.valid_pixels < kMinTrackedPixels)
+    return result;
   result.lost = LostReason::kNotFound;
   // Find works on small images; only Verify, at full resolution, may say that the rig is there.
   const auto pose = searched.relocaliser->Find(depth, *searched.tsdf, min_weight_, pool);

@@ -2,17 +2,18 @@
 
 #include <fmt/format.h>
 
+#include "common/base/check.h"
 #include "common/base/log.h"
+#include "common/base/stage_timer.h"
 #include "ground/tracker/initial_pose.h"
 
 namespace isotherm {
 
 Tracker::Tracker(const GroundOptions& options, const CameraModel& depth_camera,
-                 std::optional<RigidTransform> initial_pose, Atlas& atlas, StageTimes& stages)
+                 std::optional<RigidTransform> initial_pose, Atlas& atlas)
     : options_(options.submaps()),
       initial_pose_(initial_pose),
       atlas_(atlas),
-      stages_(stages),
       rig_(options, depth_camera),
       loop_closer_(options, atlas_, rig_) {}
 
@@ -25,6 +26,7 @@ RigidTransform Tracker::FirstPose(const PreparedDepth& depth) const {
 
 TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, ThreadPool& pool) {
   using Outcome = TrackedFrame::Outcome;
+  CHECK(pending_ == Pending::kNothing);
   TrackedFrame frame;
   frame.time = time;
   const int map_before = atlas_.active_index();
@@ -53,13 +55,15 @@ TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, Thread
   } else {
     frame.outcome = is_first ? Outcome::kFirst : Outcome::kTracked;
   }
+  if (frame.outcome != Outcome::kLost)
+    pending_ = frame.is_believed() ? Pending::kDecision : Pending::kView;
   return frame;
 }
 
 TrackingResult Tracker::TrackInModel(const PreparedDepth& depth, CaptureTime time,
                                      ThreadPool& pool) {
   const bool lost = rig_.state() == RigTracker::State::kLost;
-  const StageTimer timer(stages_[lost ? Stage::kRelocalise : Stage::kTrack]);
+  const StageTimer timer(lost ? times_.relocalise : times_.track);
   // A rig is most often found where it was lost: that map is searched first, then all in turn, one
   // a frame, so that a lost frame costs the same however many maps there are.
   if (!lost) searched_ = atlas_.active_index();
@@ -88,6 +92,8 @@ bool Tracker::BeginElsewhere(const PreparedDepth& depth, CaptureTime time) {
 }
 
 void Tracker::Accept(const TrackedFrame& frame) {
+  CHECK(pending_ == Pending::kDecision);
+  pending_ = Pending::kView;
   // Frames that waited for confirmation get this frame's sigma: theirs was not followed while they
   // were only candidates.
   const PoseSigma sigma = LargestSigma(uncertainty().covariance());
@@ -97,12 +103,19 @@ void Tracker::Accept(const TrackedFrame& frame) {
   trajectory_.Add({frame.time, frame.tracking.T_map_depth}, sigma, map, atlas_);
 }
 
+void Tracker::Reject() {
+  CHECK(pending_ == Pending::kDecision);
+  pending_ = Pending::kNothing;
+  rig_.Forget();
+}
+
 bool Tracker::CloseLoops(const TrackedFrame& frame, const PreparedDepth& depth,
                          std::span<const std::int32_t> blocks_in_view, ThreadPool& pool) {
+  CHECK(pending_ == Pending::kView && frame.is_believed());
   // Known views are recorded before loops are closed, in the map that was tracked against: Update
   // may switch maps.
   atlas_.active().relocaliser->Add(frame.tracking.T_map_depth);
-  const StageTimer timer(stages_[Stage::kSubMaps]);
+  const StageTimer timer(times_.sub_maps);
   const LoopCloser::Change change =
       loop_closer_.Update(depth, frame.tracking.T_map_depth, blocks_in_view, pool);
   // Joined or moved sub-maps take their past poses along.
@@ -111,8 +124,16 @@ bool Tracker::CloseLoops(const TrackedFrame& frame, const PreparedDepth& depth,
 }
 
 void Tracker::LookFrom(const RigidTransform& T_map_depth, bool is_young, ThreadPool& pool) {
-  const StageTimer timer(stages_[Stage::kRaycast]);
+  CHECK(pending_ != Pending::kDecision);
+  pending_ = Pending::kNothing;
+  const StageTimer timer(times_.raycast);
   rig_.LookFrom(T_map_depth, *atlas_.active().tsdf, is_young, pool);
+}
+
+void Tracker::Rebase(const RigidTransform& T_new_old) {
+  CHECK(pending_ == Pending::kNothing);
+  pending_ = Pending::kView;
+  rig_.Rebase(T_new_old);
 }
 
 MapPose Tracker::pose() const {

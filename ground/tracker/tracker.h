@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/stage_stats.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
@@ -13,7 +14,6 @@
 #include "common/geometry/rigid_transform.h"
 #include "ground/atlas/atlas.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/stage_times/stage_times.h"
 #include "ground/tracker/loop_closer.h"
 #include "ground/tracker/rig_tracker.h"
 #include "ground/tracker/trajectory.h"
@@ -37,16 +37,31 @@ struct TrackedFrame {
   bool is_believed() const { return outcome == Outcome::kFirst || outcome == Outcome::kTracked; }
 };
 
+/// Holds the times that the tracker's calls took.
+struct TrackerTimes {
+  StageStats track;
+  StageStats relocalise;  ///< Instead of `track` while the rig is lost.
+  StageStats sub_maps;
+  StageStats raycast;
+};
+
 /// Says for each depth frame where the rig is, in which sub-map, and whether that is believed. A
 /// rig that is lost is looked for in all sub-maps in turn; if that lasts, the scan goes on in a new
 /// one. Poses that are believed make the trajectory. It begins and joins sub-maps, but what is in
-/// them is changed by others, between Track and Accept. Thread-bound.
+/// them is changed by others, between Track and Accept. The order of calls is checked (CHECK):
+///
+///   Track -> Accept -> [CloseLoops] -> LookFrom      a frame that is believed
+///   Track -> Reject                                  a first frame that left no surface
+///   Track -> LookFrom                                a pose that is not believed yet
+///   Track                                            a rig that is lost
+///
+/// Thread-bound.
 class Tracker {
  public:
   /// `initial_pose` is T_world_depth of the first frame; without one the volume's centre is put on
-  /// its optical axis at its median depth. `atlas` and `stages` must outlive the tracker.
+  /// its optical axis at its median depth. `atlas` must outlive the tracker.
   Tracker(const GroundOptions& options, const CameraModel& depth_camera,
-          std::optional<RigidTransform> initial_pose, Atlas& atlas, StageTimes& stages);
+          std::optional<RigidTransform> initial_pose, Atlas& atlas);
   /// From now on, temperatures help where the geometry does not suffice.
   void UseThermal(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth) {
     rig_.UseThermal(thermal_camera, T_thermal_depth);
@@ -59,13 +74,12 @@ class Tracker {
   /// In order of capture time, ideally before the first depth frame that is not older.
   void AddExternalOdometry(const ExternalOdometry& pose) { rig_.AddExternalOdometry(pose); }
 
-  /// Finds the pose of the next frame. Accept or Reject must follow if it is believed, and LookFrom
-  /// if it has a pose at all.
+  /// Finds the pose of the next frame.
   TrackedFrame Track(const PreparedDepth& depth, CaptureTime time, ThreadPool& pool);
   /// The frame joins the trajectory, and with it those that led to its being believed.
   void Accept(const TrackedFrame& frame);
   /// A first frame that left no surface: the next one is the first again.
-  void Reject() { rig_.Forget(); }
+  void Reject();
   /// After Accept of a fully observed frame that was integrated: it becomes a known view, and
   /// sub-maps are joined and begun. `blocks_in_view` are those that the frame updated. True if
   /// another sub-map is active now.
@@ -74,8 +88,8 @@ class Tracker {
   /// Casts the active sub-map from a pose: what the next frame is tracked against. `is_young`: it
   /// is little more than one frame's noise.
   void LookFrom(const RigidTransform& T_map_depth, bool is_young, ThreadPool& pool);
-  /// Goes on in other coordinates. LookFrom must follow.
-  void Rebase(const RigidTransform& T_new_old) { rig_.Rebase(T_new_old); }
+  /// Goes on in other coordinates, seen from there by LookFrom.
+  void Rebase(const RigidTransform& T_new_old);
 
   /// The newest pose, in the active sub-map. Only while the motion is known.
   MapPose pose() const;
@@ -87,6 +101,7 @@ class Tracker {
   const Trajectory& trajectory() const { return trajectory_; }
   /// Times that the rig was found again.
   std::uint64_t relocalisations() const { return rig_.relocalisations(); }
+  const TrackerTimes& times() const { return times_; }
 
  private:
   RigidTransform FirstPose(const PreparedDepth& depth) const;
@@ -98,13 +113,16 @@ class Tracker {
   const SubMapOptions options_;
   const std::optional<RigidTransform> initial_pose_;
   Atlas& atlas_;
-  StageTimes& stages_;
   RigTracker rig_;
   LoopCloser loop_closer_;
   Trajectory trajectory_;
+  TrackerTimes times_;
   std::optional<CaptureTime> lost_since_;
   int searched_ = 0;                         ///< The sub-map a lost rig is looked for in.
   std::vector<StampedMapPose> unconfirmed_;  ///< Part of the trajectory once believed.
+  /// Says what must be called before the next Track.
+  enum class Pending : std::uint8_t { kNothing, kDecision, kView };
+  Pending pending_ = Pending::kNothing;
 };
 
 }  // namespace isotherm

@@ -28,7 +28,7 @@ class TrackerTest : public testing::SubMapTest {
   void Restart(std::optional<RigidTransform> initial_pose) {
     tracker_.reset();
     atlas_ = std::make_unique<Atlas>(options_, camera_, Grid());
-    tracker_ = std::make_unique<Tracker>(options_, camera_, initial_pose, *atlas_, stages_);
+    tracker_ = std::make_unique<Tracker>(options_, camera_, initial_pose, *atlas_);
   }
   /// Does what the pipeline does with a frame; the surface is there from the first one on.
   TrackedFrame Track(const PreparedDepth& depth, int i) {
@@ -51,7 +51,6 @@ class TrackerTest : public testing::SubMapTest {
   }
   const std::vector<StampedPose>& poses() const { return tracker_->trajectory().poses(); }
 
-  StageTimes stages_;
   std::unique_ptr<Atlas> atlas_;
   std::unique_ptr<Tracker> tracker_;
 };
@@ -73,6 +72,18 @@ TEST_F(TrackerTest, AfterAFirstFrameThatLeftNoSurfaceTheNextIsTheFirst) {
   EXPECT_FALSE(tracker_->motion().last().has_value());
   EXPECT_EQ(Show(1).outcome, Outcome::kFirst);
   EXPECT_EQ(poses().size(), 1U);
+}
+
+TEST_F(TrackerTest, CallsInAnotherOrderAreABug) {
+  const PreparedDepth depth = Prepare(BallInCorner, TruePose(0));
+  const TrackedFrame first = tracker_->Track(depth, Time(0), pool_);
+  EXPECT_DEATH(tracker_->Track(depth, Time(1), pool_), "pending_");
+  EXPECT_DEATH(LookFrom(FirstPose()), "pending_");
+  EXPECT_DEATH(tracker_->CloseLoops(first, depth, {}, pool_), "pending_");
+  tracker_->Accept(first);
+  EXPECT_DEATH(tracker_->Accept(first), "pending_");
+  EXPECT_DEATH(tracker_->Reject(), "pending_");
+  EXPECT_DEATH(tracker_->Track(depth, Time(1), pool_), "pending_");
 }
 
 TEST_F(TrackerTest, WithoutAPoseTheVolumesCentreLiesOnTheFirstAxis) {
@@ -148,21 +159,22 @@ TEST_F(TrackerTest, ALostRigIsLookedForInAllSubMapsInTurn) {
 
 TEST_F(TrackerTest, AFrameThatIsIntegratedBecomesAKnownView) {
   Show(0);
-  const TrackedFrame frame = Show(1);
+  const PreparedDepth& depth = Prepare(BallInCorner, TruePose(1));
+  const TrackedFrame frame = tracker_->Track(depth, Time(1), pool_);
+  tracker_->Accept(frame);
   const std::size_t known = atlas_->active().relocaliser->keyframes().poses().size();
-  EXPECT_FALSE(tracker_->CloseLoops(frame, Prepare(BallInCorner, TruePose(1)), {}, pool_));
+  EXPECT_FALSE(tracker_->CloseLoops(frame, depth, {}, pool_));
   EXPECT_EQ(atlas_->active().relocaliser->keyframes().poses().size(), known + 1);
 }
 
 TEST_F(TrackerTest, TimeIsSpentOnTrackingOrOnSearching) {
   Show(0);
-  EXPECT_EQ(stages_.Find(Stage::kTrack), nullptr) << "the first pose is given";
+  EXPECT_EQ(tracker_->times().track.count(), 0U) << "the first pose is given";
   Show(1);
   Cover(2);
   Show(3);
-  ASSERT_NE(stages_.Find(Stage::kRelocalise), nullptr);
-  EXPECT_EQ(stages_.Find(Stage::kTrack)->count(), 2U);
-  EXPECT_EQ(stages_.Find(Stage::kRelocalise)->count(), 1U);
+  EXPECT_EQ(tracker_->times().track.count(), 2U);
+  EXPECT_EQ(tracker_->times().relocalise.count(), 1U);
 }
 
 }  // namespace

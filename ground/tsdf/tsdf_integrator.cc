@@ -25,38 +25,26 @@ constexpr double kTruncationVoxels = 4.0;
 /// Larger bands are typing errors: millimetres instead of metres.
 constexpr double kMaxTruncation_m = 1.0;
 
-struct CameraF {
-  float fx, fy, cx, cy;
-  int width, height;
-  explicit CameraF(const CameraModel& c)
-      : fx(static_cast<float>(c.fx)),
-        fy(static_cast<float>(c.fy)),
-        cx(static_cast<float>(c.cx)),
-        cy(static_cast<float>(c.cy)),
-        width(c.width),
-        height(c.height) {}
-};
-
 }  // namespace
 
 double TruncationDistance(const TsdfOptions& o, const VolumeOptions& volume) {
-  if (o.truncation_distance_m() != 0.0) return o.truncation_distance_m();
+  if (o.expert().truncation_distance_m() != 0.0) return o.expert().truncation_distance_m();
   return kTruncationVoxels * volume.voxel_size_m();
 }
 
 Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
   const double truncation_m = TruncationDistance(o, volume);
   // Four voxels are enough; that a voxel has a size at all is the volume's affair.
-  if (o.truncation_distance_m() != 0.0 && !(truncation_m >= 2.0 * volume.voxel_size_m())) {
-    return InvalidArgument(
-        fmt::format("tsdf.truncation_distance_m must be 0 (four voxels) or at least two voxels of "
-                    "volume.voxel_size_m ({:g} m), got {:g} m",
-                    2.0 * volume.voxel_size_m(), truncation_m));
+  if (o.expert().truncation_distance_m() != 0.0 && !(truncation_m >= 2.0 * volume.voxel_size_m())) {
+    return InvalidArgument(fmt::format(
+        "tsdf.expert.truncation_distance_m must be 0 (four voxels) or at least two voxels of "
+        "volume.voxel_size_m ({:g} m), got {:g} m",
+        2.0 * volume.voxel_size_m(), truncation_m));
   }
   if (!(truncation_m <= kMaxTruncation_m)) {
     return InvalidArgument(
-        o.truncation_distance_m() > 0.0
-            ? fmt::format("tsdf.truncation_distance_m must be at most {:g} m, got {:g} m",
+        o.expert().truncation_distance_m() > 0.0
+            ? fmt::format("tsdf.expert.truncation_distance_m must be at most {:g} m, got {:g} m",
                           kMaxTruncation_m, truncation_m)
             : fmt::format("volume.voxel_size_m must be at most {:g} m, got {:g} m",
                           kMaxTruncation_m / kTruncationVoxels, volume.voxel_size_m()));
@@ -153,30 +141,19 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
 
 void TsdfIntegrator::SelectBlocks(const CameraModel& camera, const RigidTransform& T_map_depth,
                                   const TsdfVolume& volume) {
-  const CameraF c(camera);
   const VoxelGrid& grid = volume.grid();
-  const BlockToCamera to_camera(grid, T_map_depth.inverse());
-  const float radius = BlockRadius(grid);
-  const float reach = radius + 2.0F * static_cast<float>(volume.truncation_distance_m());
-  const auto tile_of = [](float pixel, int tiles) { return TileOf(pixel, kTile, tiles); };
+  const float reach_m =
+      BlockRadius(grid) + 2.0F * static_cast<float>(volume.truncation_distance_m());
+  const BlockTiles tiles(grid, camera, T_map_depth,
+                         {kTile, farthest_m_.width(), farthest_m_.height()});
+  // Blocks that are entirely behind all that is measured where they project are skipped.
+  const auto may_be_seen = [&](int x, int y, float depth_m) {
+    const float farthest_m = farthest_m_.At(x, y);
+    return farthest_m > 0.0F && depth_m - reach_m <= farthest_m;
+  };
   updated_blocks_.clear();
   for (const std::int32_t block : visible_.Find(volume, camera, T_map_depth)) {
-    const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));
-    if (p.z() < 2.0F * radius) continue;  // Nearer than any depth camera sees.
-    // Skip blocks that are entirely behind all that is measured where they project.
-    const float extent = radius * 1.5F / (p.z() - radius);
-    const float u = c.fx * p.x() / p.z() + c.cx;
-    const float v = c.fy * p.y() / p.z() + c.cy;
-    const int x1 = tile_of(u + c.fx * extent, farthest_m_.width());
-    const int y1 = tile_of(v + c.fy * extent, farthest_m_.height());
-    bool maybe_seen = false;
-    for (int y = tile_of(v - c.fy * extent, farthest_m_.height()); y <= y1 && !maybe_seen; ++y) {
-      for (int x = tile_of(u - c.fx * extent, farthest_m_.width()); x <= x1 && !maybe_seen; ++x) {
-        const float z = farthest_m_.At(x, y);
-        maybe_seen = z > 0.0F && p.z() - reach <= z;
-      }
-    }
-    if (maybe_seen) updated_blocks_.push_back(block);
+    if (tiles.AnyOf(volume.block_coordinates(block), may_be_seen)) updated_blocks_.push_back(block);
   }
 }
 

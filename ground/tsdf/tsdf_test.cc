@@ -64,7 +64,7 @@ TEST(VoxelGridTest, F71WhatIsSaidToFitFits) {
     options.set_size_y_m(y_m);
     options.set_size_z_m(z_m);
     options.set_voxel_size_m(1e-4);
-    options.set_max_memory_bytes(1 << 20);
+    options.mutable_expert()->set_max_memory_bytes(1 << 20);
     const std::string message = MakeVoxelGrid(options).error().message();
     const std::string_view before = "use voxels of ";
     const std::size_t at = message.find(before);
@@ -82,7 +82,7 @@ TEST(VoxelGridTest, F71MoreBlocksThanCanBeNumberedAreRefused) {
   constexpr double kBlock = 0.008;
   VolumeOptions options;
   options.set_voxel_size_m(0.001);
-  options.set_max_memory_bytes(std::uint64_t{1} << 50);
+  options.mutable_expert()->set_max_memory_bytes(std::uint64_t{1} << 50);
   const auto make = [&](int blocks) {
     options.set_size_x_m(blocks * kBlock);
     options.set_size_y_m(blocks * kBlock);
@@ -95,7 +95,7 @@ TEST(VoxelGridTest, F71MoreBlocksThanCanBeNumberedAreRefused) {
 
 TEST(VoxelGridTest, F71WithoutMemoryNothingFits) {
   VolumeOptions options;
-  options.set_max_memory_bytes(0);
+  options.mutable_expert()->set_max_memory_bytes(0);
   EXPECT_EQ(MakeVoxelGrid(options).error().code(), StatusCode::kResourceExhausted);
 }
 

@@ -50,4 +50,53 @@ inline int TileOf(float pixel, int tile_px, int tiles) {
   return pixel > 0.0F ? static_cast<int>(std::min(pixel, last_px)) / tile_px : 0;
 }
 
+/// An image cut into square tiles.
+struct ImageTiles {
+  int tile_px = 1;
+  int columns = 0;
+  int rows = 0;
+};
+
+/// Says which tiles of a camera's image a block is seen in, if nothing hides it. Thread-compatible.
+class BlockTiles {
+ public:
+  /// Lens distortion of `camera` is ignored.
+  BlockTiles(const VoxelGrid& grid, const CameraModel& camera, const RigidTransform& T_map_camera,
+             const ImageTiles& tiles)
+      : camera_(camera),
+        to_camera_(grid, T_map_camera.inverse()),
+        radius_(BlockRadius(grid)),
+        tiles_(tiles) {}
+
+  /// Returns whether `meets(column, row, depth_m)` for one of the block's tiles, where `depth_m` is
+  /// that of the block's centre. False for blocks nearer than any camera sees.
+  template <typename Meets>
+  bool AnyOf(const GridIndex& block, const Meets& meets) const {
+    const Eigen::Vector3f p_camera = to_camera_.Centre(block);
+    const float depth_m = p_camera.z();
+    if (depth_m < 2.0F * radius_) return false;
+    // The corners of a block may be nearer than its centre, and project further out.
+    const float extent = radius_ * 1.5F / (depth_m - radius_);
+    const float u = camera_.fx * p_camera.x() / depth_m + camera_.cx;
+    const float v = camera_.fy * p_camera.y() / depth_m + camera_.cy;
+    const int x0 = Column(u - camera_.fx * extent), x1 = Column(u + camera_.fx * extent);
+    const int y0 = Row(v - camera_.fy * extent), y1 = Row(v + camera_.fy * extent);
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        if (meets(x, y, depth_m)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  int Column(float pixel) const { return TileOf(pixel, tiles_.tile_px, tiles_.columns); }
+  int Row(float pixel) const { return TileOf(pixel, tiles_.tile_px, tiles_.rows); }
+
+  const CameraF camera_;
+  const BlockToCamera to_camera_;
+  const float radius_;
+  const ImageTiles tiles_;
+};
+
 }  // namespace isotherm

@@ -83,7 +83,7 @@ void BM_Growth(benchmark::State& state) {
   volume.mutable_expert()->set_min_y_m(-0.48);
   volume.mutable_expert()->set_min_z_m(0.24);
   if (state.range(2) > 0) {
-    volume.set_max_memory_bytes(static_cast<std::uint64_t>(state.range(2)) << 20);
+    volume.mutable_expert()->set_max_memory_bytes(static_cast<std::uint64_t>(state.range(2)) << 20);
     volume.set_spill_dir(std::filesystem::temp_directory_path().string());
   }
   options.set_threads(2);
@@ -114,7 +114,7 @@ void BM_Growth(benchmark::State& state) {
     state.counters["blocks"] = static_cast<double>((*pipeline)->model().tsdf().block_count());
     state.counters["last_period_p50_ms"] = TakeMedian(last_period_ms);
     for (const Stage stage : AllValues<Stage>()) {
-      if (const StageStats* stats = (*pipeline)->model().stages.Find(stage))
+      if (const StageStats* stats = (*pipeline)->model().stages[stage])
         state.counters[std::string(ToString(stage)) + "_p50_ms"] = stats->Percentile(50);
     }
   }

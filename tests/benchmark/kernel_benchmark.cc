@@ -38,10 +38,10 @@ class Scene {
     TsdfIntegrator integrator(options.tsdf());
     for (std::size_t i = 0; i < frames.depth.size(); ++i)
       integrator.Integrate(preprocessor_.Process(frames.depth[i], pool),
-                           frames.truth[i].T_world_depth, pool, *volume);
+                           InFirstMap(frames.truth[i].T_world_depth), pool, *volume);
     last = &preprocessor_.Process(frames.depth.back(), pool);
-    T_world_depth = frames.truth.back().T_world_depth;
-    const RigidTransform& before = frames.truth[frames.truth.size() - 2].T_world_depth;
+    T_map_depth = InFirstMap(frames.truth.back().T_world_depth);
+    const RigidTransform& before = InFirstMap(frames.truth[frames.truth.size() - 2].T_world_depth);
     view = {{}, last->camera.Downscaled(options.raycast().expert().halvings()), before};
     Raycaster().Cast(*volume, view.camera, before, MinWeight(), pool, view.maps);
   }
@@ -52,8 +52,8 @@ class Scene {
   const GroundOptions options;
   std::unique_ptr<TsdfVolume> volume;
   const PreparedDepth* last = nullptr;
-  RigidTransform T_world_depth;  ///< Pose of the last frame.
-  ModelView view;                ///< From the pose before.
+  RigidTransform T_map_depth;  ///< Pose of the last frame.
+  ModelView view;              ///< From the pose before.
 
  private:
   DepthPreprocessor preprocessor_;
@@ -96,9 +96,11 @@ void MakeMaps(benchmark::State& state, ThreadPool& pool) {
   constexpr int kReach = 3;
   SurfaceMaps maps;
   for (auto _ : state) {
-    MakeSurfaceMaps(scene.last->depth_m, scene.last->camera, kReach,
-                    StepPerPixel(scene.last->camera, options.expert().max_surface_angle_deg()),
-                    scene.last->noise_at_1m, pool, maps);
+    MakeSurfaceMaps(
+        scene.last->depth_m, scene.last->camera,
+        {kReach, StepPerPixel(scene.last->camera, options.expert().max_surface_angle_deg()),
+         scene.last->noise_at_1m},
+        pool, maps);
     benchmark::DoNotOptimize(maps.nz.data());
   }
   state.counters["per_pixel"] = PerItem(maps.vx.size());
@@ -113,7 +115,7 @@ void Icp(benchmark::State& state, ThreadPool& pool, std::size_t level) {
   const SurfaceMaps& maps = scene.last->maps[level];
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        AccumulateIcp(maps, scene.T_world_depth, scene.view, scene.volume->grid(), limits, pool));
+        AccumulateIcp(maps, scene.T_map_depth, scene.view, scene.volume->grid(), limits, pool));
   }
   state.counters["per_pixel"] = PerItem(maps.vx.size());
 }
@@ -121,7 +123,7 @@ void Icp(benchmark::State& state, ThreadPool& pool, std::size_t level) {
 void Integrate(benchmark::State& state, ThreadPool& pool) {
   Scene& scene = SharedScene();
   TsdfIntegrator integrator(scene.options.tsdf());
-  for (auto _ : state) integrator.Integrate(*scene.last, scene.T_world_depth, pool, *scene.volume);
+  for (auto _ : state) integrator.Integrate(*scene.last, scene.T_map_depth, pool, *scene.volume);
   state.counters["per_voxel"] = PerItem(integrator.updated_blocks().size() * kBlockVoxels);
 }
 
@@ -131,7 +133,7 @@ void Raycast(benchmark::State& state, ThreadPool& pool, int halvings) {
   Raycaster raycaster;
   SurfaceMaps maps;
   for (auto _ : state) {
-    raycaster.Cast(*scene.volume, camera, scene.T_world_depth, scene.MinWeight(), pool, maps);
+    raycaster.Cast(*scene.volume, camera, scene.T_map_depth, scene.MinWeight(), pool, maps);
     benchmark::DoNotOptimize(maps.vz.data());
   }
   state.counters["per_ray"] = PerItem(maps.vx.size());
@@ -140,13 +142,13 @@ void Raycast(benchmark::State& state, ThreadPool& pool, int halvings) {
 void FuseThermal(benchmark::State& state, ThreadPool& pool) {
   const Scene& scene = SharedScene();
   const Rig& rig = scene.frames.rig;
-  const RigidTransform T_world_thermal = scene.view.T_map_depth * rig.T_thermal_depth->inverse();
+  const RigidTransform T_map_thermal = scene.view.T_map_depth * rig.T_thermal_depth->inverse();
   const ThermalFrame& frame = scene.frames.thermal.back();
   ThermalFuser fuser(scene.options.thermal(), *rig.thermal, rig.thermal_sensor, scene.MinWeight());
   ThermalVolume thermal(kMaxBlocks);
   FusionReport report;
   for (auto _ : state) {
-    report = fuser.Fuse(frame, T_world_thermal, scene.view.camera, scene.view.T_map_depth,
+    report = fuser.Fuse({frame, T_map_thermal, scene.view.camera, scene.view.T_map_depth}, {},
                         *scene.volume, pool, thermal);
   }
   CHECK(report.assigned > 0);

@@ -13,6 +13,7 @@
 #include "ground/evaluation/trajectory_evaluation.h"
 #include "ground/evaluation/true_poses.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "ground/scan/scan_model.h"
 #include "ground/tsdf/tsdf_integrator.h"
 #include "tests/benchmark/frames.h"
 #include "tests/benchmark/machine.h"
@@ -79,21 +80,21 @@ Result<Comparison> Run(const GroundOptions& options, const BenchmarkFrames& fram
   for (const DepthFrame& frame : frames.depth) {
     result.ours->ProcessDepth(frame);
     const auto start = std::chrono::steady_clock::now();
-    result.ours->CastFullView();
+    const ScanModel scan = result.ours->model();
+    CastFullView(scan, options.raycast().expert().min_weight());
     result.full_cast.Add(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
     Rest();
-    if (result.ours->trajectory().empty())
+    if (scan.trajectory.poses().empty())
       return Err(FailedPrecondition("the first frame has too little depth in the volume"));
     if (!result.open3d) {
-      const Open3dFusion::Options theirs{result.ours->tsdf().grid(),
+      const Open3dFusion::Options theirs{scan.tsdf().grid(),
                                          TruncationDistance(options.tsdf(), options.volume()),
                                          frames.rig.depth_sensor.min_depth_m,
                                          frames.rig.depth_sensor.max_depth_m, options.threads()};
-      result.open3d =
-          std::make_unique<Open3dFusion>(theirs, frames.rig.depth->WithoutDistortion(),
-                                         result.ours->trajectory().front().T_world_depth);
+      result.open3d = std::make_unique<Open3dFusion>(theirs, frames.rig.depth->WithoutDistortion(),
+                                                     scan.trajectory.poses().front().T_world_depth);
     }
     result.open3d->Process(frame);
     Rest();
@@ -109,7 +110,7 @@ void PrintRow(const char* stage, double ours_ms, double open3d_ms) {
 
 void PrintTimes(const Comparison& run) {
   const auto ours = [&](Stage stage) {
-    const StageStats* stats = run.ours->model().stages.Find(stage);
+    const StageStats* stats = run.ours->model().stages[stage];
     return stats == nullptr ? 0.0 : Median(*stats);
   };
   const FusionTimes& open3d = run.open3d->times();
@@ -145,7 +146,7 @@ void Print(const Comparison& run, const GroundOptions& options, const BenchmarkF
       1e3 * options.volume().voxel_size_m(),
       1e3 * TruncationDistance(options.tsdf(), options.volume()), size.x(), size.y(), size.z());
   PrintTimes(run);
-  const PipelineCounts& counts = run.ours->model().counts;
+  const ScanCounts& counts = run.ours->model().counts;
   fmt::print("\nisotherm: {} of {} frames tracked, {} integrated; Open3D: {} without a solution\n",
              counts.depth_tracked, counts.depth_in, counts.depth_integrated, run.open3d->lost());
   if (frames.truth.empty()) {

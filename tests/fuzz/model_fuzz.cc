@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const isotherm::MemoryFile memory(file);
   isotherm::GroundOptions options;
-  options.mutable_volume()->set_max_memory_bytes(64 << 20);
+  options.mutable_volume()->mutable_expert()->set_max_memory_bytes(64 << 20);
   static_cast<void>(isotherm::LoadModel(memory.path(), options));
   return 0;
 }

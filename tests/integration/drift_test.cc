@@ -67,7 +67,7 @@ class DriftTest : public ::testing::Test {
 TEST_F(DriftTest, AnOrbitIsClosedAndTheGapIsSpread) {
   constexpr int kFrames = 640;  // 384 degrees: the closure needs two looks.
   scan_.Start(OrbitPose(0.0));
-  const GroundPipeline& pipeline = scan_.pipeline();
+  GroundPipeline& pipeline = scan_.pipeline();
   double error_before_m = 0.0;  // Of the pose in world, just before the closure, ...
   double error_after_m = 0.0;   // ... and at the end.
   for (int i = 0; i < kFrames; ++i) {
@@ -105,7 +105,7 @@ TEST_F(DriftTest, AnOrbitIsClosedAndTheGapIsSpread) {
 TEST_F(DriftTest, AScanThatGoesOnElsewhereIsJoinedWhenBothAreSeen) {
   scan_.options().mutable_submaps()->mutable_expert()->set_start_after_lost_s(1.0);
   scan_.Start(OrbitPose(0.0));
-  const GroundPipeline& pipeline = scan_.pipeline();
+  GroundPipeline& pipeline = scan_.pipeline();
   int i = 0;
   for (; kDegPerFrame * i < 40.0; ++i) ASSERT_TRUE(scan_.Show(OrbitPose(kDegPerFrame * i)).tracked);
   for (int covered = 0; covered < 10; ++covered) scan_.ShowCovered();

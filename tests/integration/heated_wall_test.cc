@@ -128,7 +128,7 @@ GroundOptions MakeOptions(const Setting& setting) {
   volume.set_voxel_size_m(0.004);
   volume.set_size_x_m(2.4);
   volume.mutable_expert()->set_min_x_m(-0.6);
-  options.mutable_tsdf()->set_truncation_distance_m(0.016);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
   options.mutable_tracker()->set_use_thermal(setting.use_thermal);
   options.mutable_tracker()->mutable_expert()->set_thermal_min_gradient_k_m(
       setting.min_gradient_k_m);

@@ -107,7 +107,7 @@ class RecordedRecoveryTest : public ::testing::Test {
     volume.mutable_expert()->set_min_y_m(-0.48);
     volume.mutable_expert()->set_min_z_m(-0.48);
     volume.set_voxel_size_m(0.004);
-    options.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
     options.set_threads(2);
     auto created =
         GroundPipeline::Create(options, recording_->dataset.rig, Truth(script.shots.front().frame));

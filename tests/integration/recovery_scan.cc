@@ -16,7 +16,7 @@ RecoveryScan::RecoveryScan(Scene scene, std::uint64_t seed)
   rig_.depth = DefaultSimulatedRig().depth->WithoutDistortion().Downscaled(1);
   VolumeOptions& volume = *options_.mutable_volume();
   volume.set_voxel_size_m(0.004);
-  options_.mutable_tsdf()->set_truncation_distance_m(0.016);
+  options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
   options_.set_threads(2);
   SimulatedDepthOptions camera;
   // Half the focal length: half the disparity noise and steps in pixels for the same in metres.

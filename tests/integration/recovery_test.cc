@@ -11,7 +11,7 @@
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"
-#include "ground/pipeline/saved_model.h"
+#include "ground/model/saved_model.h"
 #include "tests/integration/recovery_scan.h"
 
 namespace isotherm {
@@ -178,7 +178,7 @@ TEST_F(RecoveryTest, F55RandomStartsInAFinishedModelAreFoundAndNeverElsewhere) {
     }
   }
   std::cout << found << " of " << kStarts << " found, " << wrong << " found elsewhere\n";
-  const StageStats& cost = *scan_.pipeline().model().stages.Find(Stage::kRelocalise);
+  const StageStats& cost = *scan_.pipeline().model().stages[Stage::kRelocalise];
   std::cout << "a lost frame takes " << cost.Percentile(50) << " ms, 95 % " << cost.Percentile(95)
             << " ms\n";
   // 95 to 97 with several seeds; rounding differs between instruction sets.

@@ -71,14 +71,14 @@ TEST(SpillTest, AModelUnderALimitEqualsTheOneWithout) {
   volume.mutable_expert()->set_min_x_m(-0.6);
   volume.mutable_expert()->set_min_y_m(-0.48);
   volume.set_voxel_size_m(0.004);
-  options.mutable_tsdf()->set_truncation_distance_m(0.016);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
   options.set_threads(2);
   const auto kept_in_memory = Scan(options);
   const ScanModel whole = kept_in_memory->model();
 
   const testing::TemporaryDirectory folder;
   volume.set_spill_dir(folder.path().string());
-  volume.set_max_memory_bytes(6'000'000);  // A good half of what the model takes.
+  volume.mutable_expert()->set_max_memory_bytes(6'000'000);  // A good half of what the model takes.
   const auto limited = Scan(options);
   const ScanModel spilled = limited->model();
 

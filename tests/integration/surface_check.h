@@ -15,9 +15,9 @@ inline SurfaceErrors CheckSurface(GroundPipeline& pipeline, const TrueSurface& t
   options.min_weight = 1.0F;
   options.triangles = false;
   std::vector<Eigen::Vector3f> cloud;
-  for (const CloudPoint& point :
-       ExtractSurface(pipeline.model().tsdf(), pipeline.model().thermal(), options, pipeline.pool())
-           .points) {
+  for (const CloudPoint& point : ExtractSurface(pipeline.model().tsdf(), pipeline.model().thermal(),
+                                                options, pipeline.model().pool)
+                                     .points) {
     cloud.push_back(point.position_m);
   }
   return EvaluateSurface(cloud, truth, {});

@@ -2,9 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <condition_variable>
-#include <mutex>
-
+#include "common/base/mutex.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/testing/test_domain.h"
 #include "ground/subscriber/subscriber.h"
@@ -150,11 +148,11 @@ TEST_F(TrustTest, F60WhoIsNotAGroundStationIsNotBelieved) {
 }
 
 TEST_F(TrustTest, F60OnlyFeedbackOnAFrameThatWasPublishedIsTaken) {
-  std::mutex mutex;
+  Mutex mutex;
   std::vector<std::uint64_t> taken;
   PublisherHandlers handlers;
   handlers.feedback = [&](const Feedback& feedback, CaptureTime) {
-    std::scoped_lock lock(mutex);
+    const MutexLock lock(mutex);
     taken.push_back(feedback.frame_number);
   };
   Peer ground(environment_, domain_.number());
@@ -192,7 +190,7 @@ TEST_F(TrustTest, F60OnlyFeedbackOnAFrameThatWasPublishedIsTaken) {
   last.session = kSession + 1;
   ground.Send(last);  // In order: when this one has been refused, the one before has been taken.
   EXPECT_TRUE(AwaitRefused(edge.publisher(), 2 + forgeries.size()));
-  std::scoped_lock lock(mutex);
+  const MutexLock lock(mutex);
   EXPECT_THAT(taken, ElementsAre(7));
 }
 

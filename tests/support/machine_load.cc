@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <fstream>
-#include <mutex>
 #include <sstream>
 
+#include "common/base/pause.h"
 #include "tests/support/process.h"
 
 namespace isotherm::system_test {
@@ -80,15 +79,12 @@ double MachineLoad::OthersFraction(const ProcessorTime& from, const ProcessorTim
 }
 
 void MachineLoad::Watch(const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any never;
   ProcessorTime before = start_;
   while (!stop.stop_requested()) {
-    std::unique_lock lock(mutex);
-    never.wait_for(lock, stop, kWindow, [] { return false; });
+    Pause(stop, kWindow);
     if (stop.stop_requested()) return;
     const ProcessorTime now = Read();
-    const MutexLock worst_lock(mutex_);
+    const MutexLock lock(mutex_);
     worst_ = std::max(worst_, OthersFraction(before, now));
     before = now;
   }
@@ -103,6 +99,11 @@ double MachineLoad::worst_others_fraction() const {
 
 bool MachineLoad::is_busy() const {
   return others_fraction() > kBusyOnAverage || worst_others_fraction() > kBusyForASecond;
+}
+
+double MachineLoad::excused_fraction() const {
+  constexpr double kMaxExcused = 0.25;
+  return is_busy() ? std::min(others_fraction(), kMaxExcused) : 0.0;
 }
 
 std::string MachineLoad::ToText() const {

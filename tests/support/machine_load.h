@@ -25,6 +25,10 @@ class MachineLoad {
   double worst_others_fraction() const;
   /// Others left so little that lateness and losses by lateness tell nothing.
   bool is_busy() const;
+  /// Returns the part of all frames that may be lost because of others, 0..1: none unless they kept
+  /// the computer busy, then no more than they took on average, and never more than a quarter,
+  /// since the programs need less than what is left.
+  double excused_fraction() const;
   /// Returns those figures, for people.
   std::string ToText() const;
 

@@ -105,9 +105,13 @@ Process::~Process() {
 
 void Process::Signal(int signal) const { kill(pid_, signal); }
 
+bool Process::HasEnded(Seconds timeout) const {
+  return exit_status_.has_value() || WaitReadable(pidfd_, timeout);
+}
+
 std::optional<ExitStatus> Process::WaitForExit(Seconds timeout) {
   if (exit_status_) return exit_status_;
-  if (!WaitReadable(pidfd_, timeout)) return std::nullopt;
+  if (!HasEnded(timeout)) return std::nullopt;
   int status = 0;
   CHECK(waitpid(pid_, &status, 0) == pid_);
   exit_status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

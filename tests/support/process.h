@@ -39,6 +39,8 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void Signal(int signal) const;
+  /// True as soon as the program has ended, false if it still runs after `timeout`.
+  bool HasEnded(Seconds timeout) const;
   /// The exit status, or nullopt if the program still runs after `timeout`.
   std::optional<ExitStatus> WaitForExit(Seconds timeout);
   /// True as soon as `text` has appeared in the output this many times, false if it has not within

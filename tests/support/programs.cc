@@ -46,7 +46,7 @@ std::filesystem::path GroundService() { return Program("isotherm-ground"); }
 int TestDomain() { return 100 + static_cast<int>(getpid() % 100); }
 
 std::vector<std::string> QuickModel() {
-  return {"--set", "volume.voxel_size_m=0.006", "--set", "tsdf.truncation_distance_m=0.024"};
+  return {"--set", "volume.voxel_size_m=0.006", "--set", "tsdf.expert.truncation_distance_m=0.024"};
 }
 
 void SimulateScan(const std::filesystem::path& path, double duration_s) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,15 @@
 #include <string>
 
 namespace isotherm::testing {
+
+// What every test of the tool uses.
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+/// Exit statuses, as in sysexits.h.
+inline constexpr int kUsage = 64, kData = 65, kNoInput = 66, kCannotCreate = 73, kIo = 74,
+                     kConfiguration = 78;
 
 inline std::string ReadAll(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -45,6 +55,12 @@ class ToolRun : public ::testing::Test {
     const int raw = std::system(command.c_str());
     return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, ReadAll(folder_ / "out.txt"),
             ReadAll(folder_ / "err.txt")};
+  }
+
+  /// Runs it where nothing may fail.
+  void RunWell(const std::string& arguments) const {
+    const Outcome outcome = Run(arguments);
+    ASSERT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
   }
 
   void Write(const std::string& name, const std::string& text) const {

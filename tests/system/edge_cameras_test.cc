@@ -226,7 +226,8 @@ TEST_F(CamerasTest, WithoutAnyCameraAScriptIsTold) {
 }
 
 TEST_F(CamerasTest, AModeThatTheCameraLacksEndsTheStart) {
-  const Finished edge = RunToEnd(Edge({"--set", "source.depth_camera.rate_hz=25"}), kPatience);
+  const Finished edge =
+      RunToEnd(Edge({"--set", "source.depth_camera.expert.rate_hz=25"}), kPatience);
   EXPECT_EQ(edge.status, 64);
   EXPECT_THAT(edge.output, HasSubstr("the camera has no mode 640x480@25 1 mm; it has 640x480@30"));
 }

@@ -71,7 +71,7 @@ TEST_P(F43SyncErrorTest, TheFileIsLeftANewOneBegunAndEachFrameIsAccountedFor) {
   EXPECT_TRUE(edge.WaitForOutput("recording to", kPatience, 2)) << "it is tried again";
   std::filesystem::remove(failing);
   ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
-  EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
+  ExpectToLeave(edge, 73);
   EXPECT_EQ(Count(edge.output(), "recording ended early"), 1) << edge.output();
 
   const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "recorded");
@@ -115,14 +115,14 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
     other << std::string(4'180'000, 'x');
   }
   // Without a reserve the disk itself says no.
-  Process edge(
-      Replay({"--record", file_, "--set", "spool.reserve_mb=0", "--set", "spool.reserve_s=0"}));
+  Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_mb=0", "--set",
+                       "spool.expert.reserve_s=0"}));
   ASSERT_TRUE(edge.WaitForOutput("recording ended early", kPatience)) << edge.output();
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: cannot write", kPatience))
       << edge.output();
   std::filesystem::remove(ballast);
   ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
-  EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
+  ExpectToLeave(edge, 73);
   const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "recorded");
   EXPECT_TRUE(counters.Closes()) << edge.output();
   long found = 0;
@@ -137,15 +137,15 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   Mount(64);
   if (IsSkipped()) return;
   // As soon as the rate is known, the reserve is more than this disk has.
-  Process edge(Replay(
-      {"--record", file_, "--set", "spool.reserve_s=86400", "--set", "spool.reserve_mb=66"}));
+  Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_s=86400", "--set",
+                       "spool.expert.reserve_mb=66"}));
   ASSERT_TRUE(edge.WaitForOutput("the disk is full but for its reserve", kPatience))
       << edge.output();
   const RecordingContent content = ReadRecording(file_);
   EXPECT_TRUE(content.complete);
   EXPECT_THAT(content.depth, Not(IsEmpty()));
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: the disk is full", kPatience));
-  Leave(edge, 73);
+  ExpectToLeave(edge, 73);
   const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
   EXPECT_EQ(published.done, published.captured);
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));

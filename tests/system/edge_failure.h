@@ -12,6 +12,7 @@
 
 #include "common/testing/temporary_directory.h"
 #include "edge/openni/testing/fake_depth_camera.h"
+#include "tests/support/departure.h"
 #include "tests/support/programs.h"
 #include "tests/support/small_scan.h"
 
@@ -21,9 +22,10 @@ namespace isotherm::system_test {
 inline constexpr const char* kWatchdog = "WATCHDOG_USEC=10000000";
 inline constexpr Seconds kWatchdogSec{10};
 inline constexpr const char* kFed = "WATCHDOG=1";
-/// The daemon promises to leave so soon after SIGTERM, and a loaded test computer adds the slack.
+/// The daemon promises to leave so soon after SIGTERM, ...
 inline constexpr Seconds kTimeToLeave{2.0};
-inline constexpr Seconds kSlack{4.0};
+/// ... and gives this to a disk that does not answer (kDisk of stop_limits).
+inline constexpr Seconds kForTheDisk{3.5};
 
 /// How often `words` stand in `text`.
 inline int Count(const std::string& text, const std::string& words) {
@@ -61,12 +63,12 @@ class EdgeFailureTest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Edge(std::move(arguments));
   }
-  /// Ends it and measures how long it takes.
-  static Seconds Leave(Process& edge, int expected_status) {
-    const auto asked = std::chrono::steady_clock::now();
-    edge.Signal(SIGTERM);
-    EXPECT_EQ(edge.WaitForExit(kPatience), expected_status) << edge.output();
-    return std::chrono::steady_clock::now() - asked;
+  /// Ends it, which takes no longer than `limit` unless others have the processors.
+  static Departure ExpectToLeave(Process& edge, int status, Seconds limit = kTimeToLeave) {
+    const Departure departure = Leave(edge, SIGTERM, kPatience);
+    EXPECT_EQ(departure.status, status) << edge.output();
+    EXPECT_LT(departure.own(), limit) << departure.ToText() << edge.output();
+    return departure;
   }
   static std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;

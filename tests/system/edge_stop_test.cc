@@ -78,7 +78,7 @@ class EdgeStopTest : public EdgeFailureTest {
 TEST_F(EdgeStopTest, F38WithCameraDiskAndLinkStuckAtOnceItIsGoneWithinTheOneDeadline) {
   Process edge(StuckEdge());
   ASSERT_NO_FATAL_FAILURE(MakeAllHang(edge));
-  EXPECT_LT(Leave(edge, 73), kMaxStop) << edge.output();
+  ExpectToLeave(edge, 73, kMaxStop);
   EXPECT_THAT(edge.output(), HasSubstr("a camera did not end within"));
   EXPECT_THAT(edge.output(), HasSubstr("the disk did not end within"));
   EXPECT_THAT(edge.output(), HasSubstr("= published")) << "the counters are told all the same";
@@ -91,9 +91,7 @@ TEST_F(EdgeStopTest, F38StagesThatTakeAllTheirTimeDoNotAddUpAndTheRecordingIsCom
     std::this_thread::sleep_for(kDiskAnswersAfter);  // It is what this disk does.
     std::filesystem::remove(stuck_);
   });
-  const Seconds took = Leave(edge, 0);
-  EXPECT_GT(took, kDiskAnswersAfter) << edge.output();
-  EXPECT_LT(took, kMaxStop) << edge.output();
+  EXPECT_GT(ExpectToLeave(edge, 0, kMaxStop).took, kDiskAnswersAfter) << edge.output();
   EXPECT_THAT(edge.output(), HasSubstr("a camera did not end within 0.4 s"))
       << "the middleware, which uses what the camera does, neither";
   EXPECT_TRUE(ReadRecording(file_).complete);

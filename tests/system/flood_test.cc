@@ -1,13 +1,25 @@
-// Row F62 with the daemons as they ship: a peer that goes by ever new names does not make them
-// grow.
+// Rows F62 and F64 with the daemons as they ship: a peer that goes by ever new names, or sends
+// packets that are none, makes neither them nor their logs grow.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <set>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "common/testing/temporary_directory.h"
 #include "tests/support/programs.h"
@@ -31,7 +43,109 @@ long MemoryOf_kB(pid_t pid) {
   return resident * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-TEST(FloodTest, F62EverNewNamesDoNotMakeEitherDaemonGrow) {
+/// The UDP ports at which a process listens.
+std::vector<std::uint16_t> PortsOf(pid_t pid) {
+  std::set<std::string> sockets;
+  const std::string folder = "/proc/" + std::to_string(pid) + "/fd";
+  for (const auto& descriptor : std::filesystem::directory_iterator(folder)) {
+    std::error_code gone;
+    const std::string target = std::filesystem::read_symlink(descriptor.path(), gone).string();
+    if (target.starts_with("socket:[")) sockets.insert(target.substr(8, target.size() - 9));
+  }
+  std::vector<std::uint16_t> ports;
+  std::ifstream table("/proc/net/udp");
+  std::string line;
+  std::getline(table, line);  // The heads of the columns.
+  while (std::getline(table, line)) {
+    std::istringstream columns(line);
+    std::string number, local, skipped, inode;
+    columns >> number >> local;
+    for (int column = 2; column < 9; ++column) columns >> skipped;
+    columns >> inode;
+    if (!sockets.contains(inode)) continue;
+    ports.push_back(
+        static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
+  }
+  return ports;
+}
+
+/// Sends what begins as a packet of the middleware's protocol and ends in the middle of a message.
+class MalformedPackets {
+ public:
+  MalformedPackets() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
+  ~MalformedPackets() { close(socket_); }
+  MalformedPackets(const MalformedPackets&) = delete;
+  MalformedPackets& operator=(const MalformedPackets&) = delete;
+
+  void Send(const std::vector<std::uint16_t>& ports, int packets) const {
+    // "RTPS", version 2.1, a vendor, a sender, then a DATA submessage of 8 bytes instead of 24.
+    std::array<std::uint8_t, 32> packet = {'R', 'T', 'P', 'S', 2, 1, 1, 16, 9,    9, 9, 9,
+                                           9,   9,   9,   9,   9, 9, 9, 9,  0x15, 5, 8, 0};
+    for (int i = 0; i < packets; ++i) {
+      packet[8] = static_cast<std::uint8_t>(i);
+      for (const std::uint16_t port : ports) {
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        to.sin_port = htons(port);
+        sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+               sizeof(to));
+      }
+    }
+  }
+
+ private:
+  const int socket_;
+};
+
+int Count(const std::string& text, const std::string& words) {
+  int count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(FloodTest, F64MalformedPacketsLeaveALineInTenSecondsWithTheirNumberAndNothingElse) {
+  const testing::TemporaryDirectory folder;
+  const std::string domain = std::to_string(TestDomain());
+  SimulateScan(folder.path() / "source.mcap", 0.2);
+  Process edge({EdgeDaemon(),
+                {"--recording", folder.path() / "source.mcap", "--domain", domain, "--record",
+                 "off", "--set", "source.loops=0"},
+                {}});
+  Process ground({GroundService(), {"--domain", domain, "--output", folder.path() / "ground"}, {}});
+  ASSERT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output() << edge.output();
+  const MalformedPackets packets;
+  for (Process* daemon : {&edge, &ground}) {
+    const std::vector<std::uint16_t> ports = PortsOf(daemon->pid());
+    ASSERT_FALSE(ports.empty());
+    packets.Send(ports, 1000);
+    ASSERT_TRUE(daemon->WaitForOutput("malformed packet", kPatience)) << daemon->output();
+    const auto first_line = std::chrono::steady_clock::now();
+    const long before_kB = MemoryOf_kB(daemon->pid());
+    packets.Send(ports, 200'000);
+    EXPECT_LT(MemoryOf_kB(daemon->pid()) - before_kB, kMaxGrowth_kB);
+    while (!daemon->WaitForOutput("more since the last such line", Seconds(0.1))) {
+      ASSERT_LT(Seconds(std::chrono::steady_clock::now() - first_line), kPatience);
+      packets.Send(ports, 10);
+    }
+    const Seconds passed = std::chrono::steady_clock::now() - first_line;
+    EXPECT_GT(passed.count(), 9.0);
+    EXPECT_LE(Count(daemon->output(), "Dds: malformed packet"), 2 + passed.count() / 10.0);
+    EXPECT_EQ(daemon->WaitForExit(Seconds(0)), std::nullopt) << daemon->output();
+  }
+  edge.Signal(SIGTERM);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  ASSERT_TRUE(ground.WaitForOutput("scan ended", kPatience)) << "it still listens";
+}
+
+/// Names come with samples, or are only taken back.
+class NameFloodTest : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Names, NameFloodTest, ::testing::Bool(), [](const auto& test) {
+  return test.param ? "ThatAreTakenBack" : "WithSamples";
+});
+
+TEST_P(NameFloodTest, F62EverNewNamesDoNotMakeEitherDaemonGrow) {
   const testing::TemporaryDirectory folder;
   const auto path = [&](const char* name) { return folder.path() / name; };
   const std::string domain = std::to_string(TestDomain());
@@ -45,7 +159,9 @@ TEST(FloodTest, F62EverNewNamesDoNotMakeEitherDaemonGrow) {
   ASSERT_TRUE(edge.WaitForOutput("waiting for a ground station", kPatience)) << edge.output();
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   const auto flood = [&](int names) {
-    auto peer = std::make_unique<Process>(Command{FLOOD_PEER, {domain, std::to_string(names)}, {}});
+    std::vector<std::string> arguments = {domain, std::to_string(names)};
+    if (GetParam()) arguments.emplace_back("take-back");
+    auto peer = std::make_unique<Process>(Command{FLOOD_PEER, arguments, {}});
     EXPECT_TRUE(peer->WaitForOutput("flooded", kPatience));
     return peer;  // As long as it lives, the middleware keeps what it knows of its names.
   };

@@ -29,11 +29,11 @@ class GroundDiskTest : public ::testing::Test {
 
   std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
 
-  /// As fast as the ground takes it.
-  static Command Edge(int loops) {
+  /// As fast as the ground takes it, or at another rate.
+  static Command Edge(int loops, const std::string& rate = "0") {
     Command edge = EndlessEdge();
     edge.arguments.insert(edge.arguments.end(),
-                          {"--rate", "0", "--wait-for-ground", "--exit-at-end", "--set",
+                          {"--rate", rate, "--wait-for-ground", "--exit-at-end", "--set",
                            "source.loops=" + std::to_string(loops)});
     return edge;
   }

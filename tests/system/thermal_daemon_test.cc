@@ -44,7 +44,7 @@ class ThermalDaemonTest : public ::testing::Test {
         // Where a fake depth camera reads what it shall do.
         "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"", "--set",
         // The emulated bus answers for /dev itself, also to those who only want to name it.
-        "source.camera_sandbox.enabled=false", "--record", file_.string(), "--domain",
+        "source.camera_sandbox.expert.enabled=false", "--record", file_.string(), "--domain",
         std::to_string(TestDomain())};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {}, {}};
@@ -119,11 +119,17 @@ class ThermalDaemonTest : public ::testing::Test {
 TEST_F(ThermalDaemonTest, F04UnpluggedInMidFrameTheScanGoesOnWhenItIsBack) {
   // Longer away than a service manager waits for a sign of life.
   bus_->Plug(std::make_shared<EmulatedLepton>("20*f unplug:11000 f"));
-  Process edge(Edge());
+  NotifySocket manager(folder_.path());
+  Command command = Edge();
+  command.environment.insert(command.environment.end(),
+                             {manager.environment(), "WATCHDOG_USEC=10000000"});
+  Process edge(command);
   bus_->SetChild(edge.pid());
   ASSERT_TRUE(edge.WaitForOutput("serial=\"LEPTON-1\"", kPatience)) << edge.output();
   ASSERT_TRUE(edge.WaitForOutput("was unplugged", kPatience)) << edge.output();
   ASSERT_TRUE(edge.WaitForOutput("thermal camera: lost", kPatience)) << edge.output();
+  EXPECT_LT(manager.LongestSilence("WATCHDOG=1", Seconds(10.5)), Seconds(10));
+  EXPECT_TRUE(manager.WaitForText("STATUS=the thermal camera is lost", kPatience));
   ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience, 2)) << edge.output();
   EXPECT_FALSE(edge.WaitForExit(Seconds(1.5)).has_value());
   const FrameCountersText counters = End(edge);

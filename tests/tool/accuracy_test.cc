@@ -122,7 +122,7 @@ TEST_F(AccuracyTest, ExcerptOfTheRenderedFurnaceDoorWithTruth) {
   ASSERT_TRUE(ImportFolder(ISOTHERM_SOURCE_DIR "/tests/data/furnace_excerpt"));
   GroundOptions options = FurnaceDoorOptions();
   options.mutable_volume()->set_voxel_size_m(0.003);
-  options.mutable_tsdf()->set_truncation_distance_m(0.012);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.012);
   const ReconstructSummary summary = Run(options, data_ / "groundtruth.txt");
   EXPECT_EQ(summary.tracked_frames, 49U);
   const EvaluationReport report = CompareWithFurnaceDoor();
@@ -138,7 +138,7 @@ TEST_F(AccuracyTest, RealKinectRoom) {
   if (!Import("kinect_kitchen")) GTEST_SKIP() << "no test data; set ISOTHERM_DATA_DIR";
   GroundOptions options;
   for (const char* set : {"volume.size_x_m=4", "volume.size_y_m=3", "volume.size_z_m=4",
-                          "volume.voxel_size_m=0.006", "tsdf.truncation_distance_m=0.03"}) {
+                          "volume.voxel_size_m=0.006", "tsdf.expert.truncation_distance_m=0.03"}) {
     ASSERT_TRUE(ApplyOverride(set, options).ok());
   }
   const ReconstructSummary summary = Run(options, {});
@@ -167,7 +167,7 @@ shutter { interval_s: 0 first_s: 100 })",
   ASSERT_TRUE(RenderToFile(simulation, recording_, false, pool, [](double) {}).ok());
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(0.004);
-  options.mutable_tsdf()->set_truncation_distance_m(0.016);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
   Run(options, recording_);
   InterpretationOptions* interpretation = options.mutable_interpretation();
   interpretation->set_emissivity(0.96);
@@ -228,7 +228,7 @@ shutter { first_s: 0.6 duration_s: 0.2 })",
   ASSERT_TRUE(WriteTrueSurface(simulation, surface).ok());
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(0.004);
-  options.mutable_tsdf()->set_truncation_distance_m(0.016);
+  options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
   const ReconstructSummary summary = Run(options, recording_);
   EXPECT_EQ(summary.tracked_frames, summary.depth_frames);
   EXPECT_NEAR(static_cast<double>(summary.depth_frames), 90.0, 2.0);

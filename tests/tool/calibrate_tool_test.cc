@@ -1,6 +1,5 @@
 // `isotherm calibrate time` and the check of the delay after a scan, as a user runs them.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,17 +13,9 @@
 #include "common/rig/rig_calibration.h"
 #include "tests/support/tool.h"
 
-namespace isotherm {
+namespace isotherm::testing {
 namespace {
 
-namespace fs = std::filesystem;
-using isotherm::testing::Outcome;
-using isotherm::testing::ReadAll;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-constexpr int kUsage = 64, kData = 65;
 // The calibration is asked for this accuracy at real cameras' resolution.
 constexpr double kTolerance_s = 0.001;
 // Small cameras in a coarse model come out 1.1 to 1.4 ms late; presumably tracked poses lag.
@@ -45,17 +36,16 @@ double Number(const std::string& json, const std::string& key) {
   return at == std::string::npos ? NAN : std::strtod(json.c_str() + at + key.size() + 4, nullptr);
 }
 
-class CalibrateToolTest : public isotherm::testing::ToolRun {
+class CalibrateToolTest : public ToolRun {
  protected:
   // scan.mcap, whose stamps are the true exposures.
   void Simulate(const std::string& more = "--scene furnace-door --duration 12") {
     Write("rig.textproto", kRig);
-    const Outcome outcome =
-        Run("simulate -o scan.mcap --set rig_file=rig.textproto "
-            "--set depth.expert.depth_scale=4000 --set depth.expert.disparity_noise_px=0.03 "
-            "--set depth.expert.disparity_step_px=0.03125 --set thermal.rate_hz=20 " +
-            more);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    RunWell(
+        "simulate -o scan.mcap --set rig_file=rig.textproto "
+        "--set depth.expert.depth_scale=4000 --set depth.expert.disparity_noise_px=0.03 "
+        "--set depth.expert.disparity_step_px=0.03125 --set thermal.rate_hz=20 " +
+        more);
   }
 
   // A copy of scan.mcap as another program would have made it, by its metadata.
@@ -85,7 +75,7 @@ class CalibrateToolTest : public isotherm::testing::ToolRun {
 
   Outcome Calibrate(const std::string& arguments) const {
     return Run("calibrate time " + arguments +
-               " --set volume.voxel_size_m=0.004 --set tsdf.truncation_distance_m=0.016");
+               " --set volume.voxel_size_m=0.004 --set tsdf.expert.truncation_distance_m=0.016");
   }
 
   Rig Load(const std::string& name) const {
@@ -198,7 +188,7 @@ TEST_F(CalibrateToolTest, TheDelayOfRecordedDataIsFoundAndThenAgrees) {
 
   const auto reconstruct = [this](const std::string& recording) {
     return Run("reconstruct " + recording + " -o " + recording + ".out --voxel 0.003 " +
-               "--set tsdf.truncation_distance_m=0.012");
+               "--set tsdf.expert.truncation_distance_m=0.012");
   };
   const Outcome moved = reconstruct("late.mcap");
   ASSERT_EQ(moved.status, 0) << moved.err;
@@ -220,4 +210,4 @@ TEST_F(CalibrateToolTest, TheDelayOfRecordedDataIsFoundAndThenAgrees) {
 }
 
 }  // namespace
-}  // namespace isotherm
+}  // namespace isotherm::testing

@@ -1,6 +1,5 @@
 // `isotherm convert` and what `inspect` says of recordings, as a user runs them.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,17 +11,8 @@
 #include "common/recording/recording.h"
 #include "tests/support/tool.h"
 
-namespace isotherm {
+namespace isotherm::testing {
 namespace {
-
-namespace fs = std::filesystem;
-using isotherm::testing::Outcome;
-using isotherm::testing::ReadAll;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-constexpr int kUsage = 64, kNoInput = 66;
 
 /// Everything of a recording that must survive a conversion.
 struct Content {
@@ -33,12 +23,9 @@ struct Content {
   RecordingInfo info;
 };
 
-class ConvertToolTest : public isotherm::testing::ToolRun {
+class ConvertToolTest : public ToolRun {
  protected:
-  void Simulate() const {
-    const Outcome outcome = Run("simulate --scene corner-sphere --duration 0.2 -o scan.mcap");
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-  }
+  void Simulate() const { RunWell("simulate --scene corner-sphere --duration 0.2 -o scan.mcap"); }
 
   template <typename Frame>
   static void Add(const Frame& frame, Content& content) {
@@ -145,4 +132,4 @@ TEST_F(ConvertToolTest, WhatCannotBeIsRefusedAndNothingIsLost) {
 }
 
 }  // namespace
-}  // namespace isotherm
+}  // namespace isotherm::testing

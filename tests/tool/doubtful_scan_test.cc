@@ -1,7 +1,6 @@
 // Recordings that can be read but cannot be right, as a user meets them: a warning with the likely
 // cause, exit status 65, and nothing that was good lost.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,17 +12,8 @@
 #include "common/recording/recording.h"
 #include "tests/support/tool.h"
 
-namespace isotherm {
+namespace isotherm::testing {
 namespace {
-
-namespace fs = std::filesystem;
-using isotherm::testing::Outcome;
-using isotherm::testing::ReadAll;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-constexpr int kUsage = 64, kData = 65;
 
 /// Holds what a copy of a scan gets wrong.
 struct Mistake {
@@ -32,12 +22,11 @@ struct Mistake {
   std::function<void(EncodedThermalFrame&)> thermal = [](EncodedThermalFrame&) {};
 };
 
-class DoubtfulScanTest : public isotherm::testing::ToolRun {
+class DoubtfulScanTest : public ToolRun {
  protected:
   void Simulate(const std::string& name = "scan.mcap",
                 const std::string& scene = "corner-sphere") const {
-    const Outcome outcome = Run("simulate --scene " + scene + " --duration 0.3 -o " + name);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    RunWell("simulate --scene " + scene + " --duration 0.3 -o " + name);
   }
 
   /// wrong.mcap, made of scan.mcap.
@@ -65,7 +54,8 @@ class DoubtfulScanTest : public isotherm::testing::ToolRun {
   }
 
   Outcome Reconstruct(const std::string& arguments) const {
-    return Run("reconstruct " + arguments + " --voxel 0.006 --set delay_check.enabled=false");
+    return Run("reconstruct " + arguments +
+               " --voxel 0.006 --set delay_check.expert.enabled=false");
   }
 
   /// inspect and reconstruct say it, and the result is there and says it, too.
@@ -161,14 +151,14 @@ TEST_F(DoubtfulScanTest, AModelThatWasNotFoundAgainDoesNotPassForTheNewResult) {
   Simulate("elsewhere.mcap", "furnace-door");
   const Outcome next =
       Run("reconstruct elsewhere.mcap -o next --continue out/model.iso "
-          "--set delay_check.enabled=false");
+          "--set delay_check.expert.enabled=false");
   EXPECT_EQ(next.status, kData);
   EXPECT_THAT(next.err, AllOf(HasSubstr("was found in the model"), HasSubstr("unchanged"),
                               HasSubstr("without --continue")));
   EXPECT_THAT(ReadAll(folder_ / "next/stats.json"), HasSubstr("that model, unchanged"));
   const Outcome same =
       Run("reconstruct scan.mcap -o same --continue out/model.iso "
-          "--set delay_check.enabled=false");
+          "--set delay_check.expert.enabled=false");
   EXPECT_EQ(same.status, 0) << same.err;
 }
 
@@ -179,11 +169,11 @@ TEST_F(DoubtfulScanTest, ResultsAreReplacedOnlyWhenAskedForAndThenCompletely) {
   Write("out/model-2.iso", "of an earlier scan");
   Write("out/notes.txt", "the user's own");
   const std::string before = ReadAll(folder_ / "out/cloud.ply");
-  const Outcome refused = Reconstruct(scan + "--set export.mesh=false");
+  const Outcome refused = Reconstruct(scan + "--set export.expert.mesh=false");
   EXPECT_EQ(refused.status, kUsage);
   EXPECT_THAT(refused.err, HasSubstr("has results of another scan; --force replaces them"));
   EXPECT_EQ(ReadAll(folder_ / "out/cloud.ply"), before);
-  const Outcome forced = Reconstruct(scan + "--force --set export.mesh=false");
+  const Outcome forced = Reconstruct(scan + "--force --set export.expert.mesh=false");
   EXPECT_EQ(forced.status, 0) << forced.err;
   EXPECT_FALSE(fs::exists(folder_ / "out/model-2.iso"));
   EXPECT_FALSE(fs::exists(folder_ / "out/mesh.ply"));
@@ -193,7 +183,8 @@ TEST_F(DoubtfulScanTest, ResultsAreReplacedOnlyWhenAskedForAndThenCompletely) {
 
 TEST_F(DoubtfulScanTest, LostFramesAreExplainedInSentences) {
   Simulate();
-  const Outcome outcome = Reconstruct("scan.mcap -o out --set preprocessor.max_depth_m=0.31");
+  const Outcome outcome =
+      Reconstruct("scan.mcap -o out --set preprocessor.expert.max_depth_m=0.31");
   EXPECT_EQ(outcome.status, kData);
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("lost: too few pixels between"), Not(HasSubstr("too_few_pixels"))));
@@ -205,7 +196,7 @@ TEST_F(DoubtfulScanTest, LargerVoxelsNeedNoOtherOption) {
   Simulate();
   const Outcome outcome =
       Run("reconstruct scan.mcap -o out --volume \"3.2 2.4 3.2\" --voxel 0.006 "
-          "--set delay_check.enabled=false");
+          "--set delay_check.expert.enabled=false");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(ReadAll(folder_ / "out/stats.json"), HasSubstr("\"truncation_distance_m\": 0.024"));
   EXPECT_THAT(Run("reconstruct scan.mcap -o other --voxel 2").err,
@@ -213,4 +204,4 @@ TEST_F(DoubtfulScanTest, LargerVoxelsNeedNoOtherOption) {
 }
 
 }  // namespace
-}  // namespace isotherm
+}  // namespace isotherm::testing

@@ -1,6 +1,5 @@
 // Runs the program `isotherm` as a user does.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -10,25 +9,15 @@
 
 #include "tests/support/tool.h"
 
+namespace isotherm::testing {
 namespace {
 
-namespace fs = std::filesystem;
-using isotherm::testing::Outcome;
-using isotherm::testing::ReadAll;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-
-constexpr int kUsage = 64, kData = 65, kNoInput = 66, kCannotCreate = 73, kIo = 74,
-              kConfiguration = 78;
-
-class ToolTest : public isotherm::testing::ToolRun {
+class ToolTest : public ToolRun {
  protected:
   // A small scan of a corner with a sphere, with truth: scan.mcap and scan.ply.
   void Simulate(const std::string& more = "") const {
-    const Outcome outcome = Run(
-        "simulate --scene corner-sphere --duration 0.4 -o scan.mcap --surface scan.ply " + more);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    RunWell("simulate --scene corner-sphere --duration 0.4 -o scan.mcap --surface scan.ply " +
+            more);
   }
 
   void PredictHeldOutViews() const {
@@ -52,7 +41,7 @@ class ToolTest : public isotherm::testing::ToolRun {
     ASSERT_EQ(one.status, 0) << one.err;
     EXPECT_THAT(one.out, AllOf(HasSubstr("the whole model"), HasSubstr("68.0 to 140.0 \u00B0F"),
                                HasSubstr("one.png")));
-    EXPECT_THAT(ReadAll(folder_ / "one.png"), testing::StartsWith("\x89PNG"));
+    EXPECT_THAT(ReadAll(folder_ / "one.png"), ::testing::StartsWith("\x89PNG"));
     // The pose that it says gives the same rendering again, from the model's file as well.
     const std::size_t pose = one.out.find("--view \"");
     ASSERT_NE(pose, std::string::npos);
@@ -137,7 +126,8 @@ class ToolTest : public isotherm::testing::ToolRun {
     EXPECT_THAT(mirror.err, AllOf(HasSubstr("mirror: "), HasSubstr("more would be reflected")));
     EXPECT_THAT(mirror.out, HasSubstr("overlap"));
     EXPECT_TRUE(fs::exists(folder_ / "mirror/mesh.ply"));
-    EXPECT_EQ(Run("export out -o again --set export.mesh=false").status, 0) << "a result folder";
+    EXPECT_EQ(Run("export out -o again --set export.expert.mesh=false").status, 0)
+        << "a result folder";
 
     const Outcome wrong =
         Run("export out/model.iso -o wrong --emissivity 1.2 --box '0 0 0 1 1: emissivity=1'");
@@ -207,7 +197,7 @@ TEST_F(ToolTest, EveryOptionIsListedWithDefaultAndMeaning) {
   EXPECT_EQ(ground.status, 0) << ground.err;
   EXPECT_THAT(
       ground.out,
-      AllOf(HasSubstr("\n  tsdf.truncation_distance_m = 0\n      Signed distances"),
+      AllOf(HasSubstr("\n  tsdf.expert.truncation_distance_m = 0\n      Signed distances"),
             HasSubstr("  tracker.external_odometry.expert.max_gap_s = 0.2\n"),
             HasSubstr("  thermal.expert.policy = BEST_CONDITIONS\n"), HasSubstr("LOWEST_GOOD")));
   const Outcome stage = Run("options ground volume");
@@ -278,7 +268,7 @@ TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
               AllOf(HasSubstr("\"complete\": true"), HasSubstr("\"missing\": 0")));
   const Outcome render = Run("inspect scan.mcap --render 3 -o frame.png");
   EXPECT_EQ(render.status, 0) << render.err;
-  EXPECT_THAT(ReadAll(folder_ / "frame.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_THAT(ReadAll(folder_ / "frame.png"), ::testing::StartsWith("\x89PNG"));
   EXPECT_EQ(Run("inspect scan.mcap --render 3 --stream depth -o depth.png").status, 0);
   EXPECT_THAT(Run("inspect scan.mcap --render 99999 -o x.png").err,
               HasSubstr("there is no thermal frame 99999"));
@@ -398,3 +388,4 @@ TEST_F(ToolTest, RealThermalOnlyDataIsImportedInspectedAndRendered) {
 }
 
 }  // namespace
+}  // namespace isotherm::testing

@@ -86,6 +86,7 @@ inline Feedback Good() {
   feedback.latencies = {{.stage = "track", .p50_s = 0.01F, .p99_s = 0.02F}};
   feedback.pose_covariance = PoseCovariance::Identity();
   feedback.advice_reason = "40 % is too far";
+  feedback.frames_left_out = 3;
   return feedback;
 }
 template <>

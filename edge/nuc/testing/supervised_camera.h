@@ -78,7 +78,7 @@ inline NucObservation Observe(Shows shows) {
 class NucSupervisorTest : public ::testing::Test {
  protected:
   NucSupervisorTest() {
-    options_.set_settle_time_s(0.5);
+    options_.mutable_expert()->set_settle_time_s(0.5);
     options_.set_warm_up(NucOptions::IGNORE);
     options_.set_max_interval_s(0);
   }

@@ -8,10 +8,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <cstring>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -19,6 +17,7 @@
 #include <vector>
 
 #include "common/base/mutex.h"
+#include "common/base/pause.h"
 #include "edge/openni/testing/fake_depth_script.h"
 #include "edge/openni/testing/shared_counter.h"
 
@@ -166,11 +165,8 @@ class FakeStream final : public oni::driver::StreamBase {
         std::chrono::duration<double>(1.0 / mode_.fps));
     const auto start = std::chrono::steady_clock::now();
     FakeDepthClock clock(script_, mode_.fps);
-    std::mutex mutex;
-    std::condition_variable_any never;
     for (int tick = 1; !stop.stop_requested(); ++tick) {
-      std::unique_lock lock(mutex);
-      never.wait_until(lock, stop, start + tick * period, [] { return false; });
+      Pause(stop, start + tick * period - std::chrono::steady_clock::now());
       if (stop.stop_requested() || unplugged_ || clock.stalled()) continue;
       if (const auto frame = clock.Next()) Send(*frame);
     }
@@ -278,11 +274,8 @@ class FakeDriver final : public oni::driver::DriverBase {
     DriverBase::initialize(connected, disconnected, changed, cookie);
     Look();
     watcher_ = std::jthread([this](const std::stop_token& stop) {
-      std::mutex mutex;
-      std::condition_variable_any never;
       while (!stop.stop_requested()) {
-        std::unique_lock lock(mutex);
-        never.wait_for(lock, stop, kPollInterval, [] { return false; });
+        Pause(stop, kPollInterval);
         Look();
       }
     });

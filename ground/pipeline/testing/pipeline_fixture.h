@@ -23,7 +23,7 @@ class PipelineFixture : public ::testing::Test {
     rig_.thermal = rig_.depth;
     rig_.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
     *options_.mutable_volume() = SmallVolume();
-    options_.mutable_tsdf()->set_truncation_distance_m(kSmallTruncation_m);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(kSmallTruncation_m);
     options_.set_threads(2);
     Start();
   }

@@ -72,7 +72,9 @@ inline void AssessCode(const ThermalPixel& pixel, const PixelHit& hit, VoxelFusi
   const double slope_v = pixel.slopes >> ThermalPixel::kSlopeVShift;
   constexpr double kSlopeScale = ThermalPixel::kSlopeScale;
   const double celsius = pixel.celsius + (slope_u * hit.du + slope_v * hit.dv) / kSlopeScale;
-  result.code = std::clamp(1.0 + kStepsPerKelvin * (celsius + 100.0), 1.0, 65535.0);
+  constexpr double kMin_celsius = ThermalLayout::kMin_celsius;
+  result.code = std::clamp(1.0 + kStepsPerKelvin * (celsius - kMin_celsius), 1.0,
+                           double{ThermalLayout::kMaxCode});
   result.slack =
       0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
       1e-6 * result.code;

@@ -85,8 +85,8 @@ class BallAndWallTest : public ::testing::Test {
   FusionReport FuseFrame(const ThermalOptions& options, const ThermalFrame& frame,
                          const CaptureConditions& capture = {}) {
     ThermalFuser fuser(options, thermal_camera_, sensor_, 0.0F);
-    return fuser.Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_,
-                      capture);
+    return fuser.Fuse({frame, T_map_thermal_, depth_camera_, T_map_depth_}, capture, *tsdf_, pool_,
+                      *thermal_);
   }
   Outcome Fuse(const ThermalOptions& options) {
     FuseFrame(options, TakeFrame(T_map_thermal_));

@@ -17,7 +17,7 @@ class SubMapTest : public ::testing::Test {
  protected:
   SubMapTest() {
     *options_.mutable_volume() = SmallVolume();
-    options_.mutable_tsdf()->set_truncation_distance_m(kSmallTruncation_m);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(kSmallTruncation_m);
   }
 
   VoxelGrid Grid() const { return MakeVoxelGrid(options_.volume()).value(); }

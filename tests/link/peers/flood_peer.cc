@@ -1,6 +1,6 @@
-// A peer that goes by ever new names, for tests: flood_peer DOMAIN NAMES. Writes a hello, a status
-// and a receipt under each, to an edge and a ground that are there; prints "flooded" when all are
-// delivered, and stays.
+// A peer that goes by ever new names, for tests: flood_peer DOMAIN NAMES [take-back]. Writes a
+// hello, a status and a receipt under each, to an edge and a ground that are there, or takes only
+// back what was never there; prints "flooded" when all are delivered, and stays.
 #include <dds/dds.h>
 #include <isotherm_control.h>
 
@@ -37,9 +37,13 @@ class Flood {
       std::this_thread::yield();
     }
   }
-  void Write(const std::string& name) const {
+  void Write(const std::string& name, bool take_back) const {
     typename TopicOf<Message>::Wire sample{};
     CopyText(name, sample.edge_id);
+    if (take_back) {
+      CHECK(dds_dispose(writer_, &sample) == DDS_RETCODE_OK);
+      return;
+    }
     ToWire(Message{}, &sample);
     SetMark(&sample);
     CHECK(dds_write(writer_, &sample) == DDS_RETCODE_OK);
@@ -50,7 +54,7 @@ class Flood {
   dds_entity_t writer_ = 0;
 };
 
-int Main(int domain, int names) {
+int Main(int domain, int names, bool take_back) {
   const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const auto participant = std::move(*Participant::Create(environment, domain));
@@ -62,9 +66,9 @@ int Main(int domain, int names) {
   receipt.AwaitReader();
   for (int i = 0; i < names; ++i) {
     const std::string name = "name-" + std::to_string(i);
-    hello.Write(name);
-    status.Write(name);
-    receipt.Write(name);
+    hello.Write(name, take_back);
+    status.Write(name, take_back);
+    receipt.Write(name, take_back);
     // So that nothing is overtaken: the history holds one sample per name, the network less.
     if (i % 100 == 0) hello.Finish(), status.Finish(), receipt.Finish();
   }
@@ -81,5 +85,5 @@ int Main(int domain, int names) {
 }  // namespace isotherm
 
 int main(int argc, char** argv) {
-  return argc == 3 ? isotherm::Main(std::atoi(argv[1]), std::atoi(argv[2])) : 64;
+  return argc >= 3 ? isotherm::Main(std::atoi(argv[1]), std::atoi(argv[2]), argc > 3) : 64;
 }
