@@ -23,7 +23,7 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
   libzstd-dev zlib1g-dev libpng-dev libsystemd-dev
   libusb-1.0-0-dev libopenni2-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev"
+  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-features2d-dev libceres-dev"
 
 # Recordings are checked against the format's reference implementation, which is JavaScript. Node.js may come from
 # elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).

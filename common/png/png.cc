@@ -149,6 +149,32 @@ class PngWriter {
   png_infop info_;
 };
 
+/// Decodes a grey image of one value per pixel, everything checked before anything is allocated.
+template <typename T>
+Status DecodeGrey(Bytes file, int bits, Image<T>& image) {
+  const Result<PngHead> head = ReadPngHead(file);
+  if (!head) return head.error();
+  const auto width = static_cast<std::uint32_t>(image.width());
+  const auto height = static_cast<std::uint32_t>(image.height());
+  if (head->width != width || head->height != height || head->channels != 1 || head->bits != bits) {
+    return DataLoss(fmt::format(
+        "is a PNG of {} x {} pixels, {} channels of {} bits, not of {} x {} pixels, {}-bit grey",
+        head->width, head->height, head->channels, head->bits, width, height, bits));
+  }
+  if (image.empty() || image.size() * sizeof(T) / kMaxRatio > file.size()) {
+    return DataLoss(
+        fmt::format("is damaged: {} bytes cannot hold {} x {} pixels", file.size(), width, height));
+  }
+  Stream stream{.rest = file};
+  PngReader reader(stream);
+  if (!reader.ok()) return Internal("libpng cannot be used");
+  const std::size_t row_bytes = std::size_t{width} * sizeof(T);
+  if (!reader.Decode(width, height, reinterpret_cast<png_bytep>(image.data()), row_bytes)) {
+    return DataLoss(fmt::format("is damaged: {}", stream.error.data()));
+  }
+  return OkStatus();
+}
+
 }  // namespace
 
 Result<PngHead> ReadPngHead(std::span<const std::uint8_t> file) {
@@ -162,27 +188,11 @@ Result<PngHead> ReadPngHead(std::span<const std::uint8_t> file) {
 }
 
 Status DecodeGrey16Png(std::span<const std::uint8_t> file, Image<std::uint16_t>& image) {
-  const Result<PngHead> head = ReadPngHead(file);
-  if (!head) return head.error();
-  const auto width = static_cast<std::uint32_t>(image.width());
-  const auto height = static_cast<std::uint32_t>(image.height());
-  if (head->width != width || head->height != height || head->channels != 1 || head->bits != 16) {
-    return DataLoss(fmt::format(
-        "is a PNG of {} x {} pixels, {} channels of {} bits, not of {} x {} pixels, 16-bit grey",
-        head->width, head->height, head->channels, head->bits, width, height));
-  }
-  if (image.empty() || image.size() * sizeof(std::uint16_t) / kMaxRatio > file.size()) {
-    return DataLoss(
-        fmt::format("is damaged: {} bytes cannot hold {} x {} pixels", file.size(), width, height));
-  }
-  Stream stream{.rest = file};
-  PngReader reader(stream);
-  if (!reader.ok()) return Internal("libpng cannot be used");
-  const std::size_t row_bytes = std::size_t{width} * sizeof(std::uint16_t);
-  if (!reader.Decode(width, height, reinterpret_cast<png_bytep>(image.data()), row_bytes)) {
-    return DataLoss(fmt::format("is damaged: {}", stream.error.data()));
-  }
-  return OkStatus();
+  return DecodeGrey(file, 16, image);
+}
+
+Status DecodeGrey8Png(std::span<const std::uint8_t> file, Image<std::uint8_t>& image) {
+  return DecodeGrey(file, 8, image);
 }
 
 Result<std::vector<std::uint8_t>> EncodePng(const PngPixels& pixels) {

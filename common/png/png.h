@@ -25,6 +25,8 @@ Result<PngHead> ReadPngHead(std::span<const std::uint8_t> file);
 /// an image can be. A file that is damaged or cut off is kDataLoss; what is in `image` is then
 /// undefined. Chunks that are not pixels (text, profiles) are skipped.
 Status DecodeGrey16Png(std::span<const std::uint8_t> file, Image<std::uint16_t>& image);
+/// The same for 8 bits per pixel.
+Status DecodeGrey8Png(std::span<const std::uint8_t> file, Image<std::uint8_t>& image);
 
 /// Pixels for the encoder: rows from the top, without gaps.
 struct PngPixels {

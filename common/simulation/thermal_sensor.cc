@@ -5,6 +5,7 @@
 
 #include "common/base/noise.h"
 #include "common/frame/frame.h"
+#include "common/simulation/gaussian_blur.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_errors.h"
@@ -13,22 +14,6 @@ namespace isotherm {
 namespace {
 
 constexpr double kNetd_celsius = 30.0;  // Temperature at which makers state the NETD.
-
-/// The discrete Gaussian (Lindeberg 1990, eq. 19): its variance on the pixels' grid is that of the
-/// Gaussian, which samples of a narrow one miss by half.
-std::vector<float> GaussianWeights(double sigma_px) {
-  constexpr double kNegligible = 1e-4;  // Of the whole, on one side.
-  const double variance = sigma_px * sigma_px;
-  std::vector<double> weights;
-  double sum = 0.0;
-  for (int i = 0; sum < 1.0 - 2.0 * kNegligible; ++i) {
-    weights.push_back(std::exp(-variance) * std::cyl_bessel_i(i, variance));
-    sum += weights.back() * (i == 0 ? 1.0 : 2.0);
-  }
-  std::vector<float> normalized;
-  for (const double weight : weights) normalized.push_back(static_cast<float>(weight / sum));
-  return normalized;
-}
 
 }  // namespace
 
@@ -84,7 +69,7 @@ void ThermalSensor::Expose(const Scene& scene, const PoseAfter& T_world_thermal,
   if (!average_.IsSingleRay())
     average_.Apply({scene, grid_, band_, emissivity, pose_of_rows, strip_rows}, scratch.hits,
                    scratch.radiance, scratch.average);
-  Blur(scratch);
+  Blur(blur_weights_, scratch.radiance, scratch.rows);
 }
 
 Image<std::uint16_t> ThermalSensor::RenderShutter(double shutter_celsius,
@@ -101,37 +86,6 @@ void ThermalSensor::FillRadiance(const RadianceView& view, int first_row, int en
     for (int x = 0; x < grid_.width(); ++x) {
       scratch.radiance.At(x, y) = static_cast<float>(
           view.At(scratch.hits.primitive.At(x, y), grid_.Ray(x, y), scratch.hits.z_m.At(x, y)));
-    }
-  }
-}
-
-void ThermalSensor::Blur(Scratch& scratch) const {
-  const int radius = static_cast<int>(blur_weights_.size()) - 1;
-  if (radius == 0) return;
-  const int width = grid_.width(), height = grid_.height();
-  scratch.rows.Resize(width, height);
-  for (int y = 0; y < height; ++y) {
-    const float* const in = scratch.radiance.Row(y).data();
-    float* const out = scratch.rows.Row(y).data();
-    for (int x = 0; x < width; ++x) {
-      float sum = blur_weights_[0] * in[x];
-      for (int i = 1; i <= radius; ++i) {
-        // The border's pixel stands for what lies beyond the image.
-        sum += blur_weights_[static_cast<std::size_t>(i)] *
-               (in[std::max(0, x - i)] + in[std::min(width - 1, x + i)]);
-      }
-      out[x] = sum;
-    }
-  }
-  for (int y = 0; y < height; ++y) {
-    float* const out = scratch.radiance.Row(y).data();
-    const float* const middle = scratch.rows.Row(y).data();
-    for (int x = 0; x < width; ++x) out[x] = blur_weights_[0] * middle[x];
-    for (int i = 1; i <= radius; ++i) {
-      const float weight = blur_weights_[static_cast<std::size_t>(i)];
-      const float* const above = scratch.rows.Row(std::max(0, y - i)).data();
-      const float* const below = scratch.rows.Row(std::min(height - 1, y + i)).data();
-      for (int x = 0; x < width; ++x) out[x] += weight * (above[x] + below[x]);
     }
   }
 }

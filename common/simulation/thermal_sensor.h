@@ -56,7 +56,6 @@ class ThermalSensor {
 
  private:
   void FillRadiance(const RadianceView& view, int first_row, int end_row, Scratch& scratch) const;
-  void Blur(Scratch& scratch) const;
   /// Computes what the detector answers, into scratch.radiance.
   void Expose(const Scene& scene, const PoseAfter& T_world_thermal, Scratch& scratch) const;
   /// Adds what each pixel gets of others, in temperature, to scratch.radiance.

@@ -14,13 +14,17 @@ namespace isotherm {
 namespace {
 
 /// How much a tracker drifts over a sub-map, and how well a view is verified in another one. Only
-/// their ratio matters to how a mismatch is spread.
+/// their ratio, ten to one, matters to how a mismatch is spread. Smaller: more of it stays at the
+/// link that closed the loop; larger: that link alone decides. Not tuned; drift_test's orbit is 5.0
+/// mm off before the closure and 0.5 mm after it.
 constexpr double kDrift_m = 0.003;
 constexpr double kDrift_rad = 0.004;
 constexpr double kVerified_m = 0.0003;
 constexpr double kVerified_rad = 0.0005;
 
-/// A view looks at much the same as one that is nearer than this.
+/// A view looks at much the same as one that is nearer than this: at 0.6 m, with a field of view of
+/// 58 degrees, half of it is common to both. Larger: looks are spent on sub-maps that show
+/// something else; smaller: loops are closed late or never. Not tuned.
 constexpr double kNearView_m = 0.3;
 constexpr double kNearView_rad = 30.0 * kRadPerDeg;
 

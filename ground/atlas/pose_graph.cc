@@ -9,6 +9,8 @@ namespace {
 using PoseError = Eigen::Matrix<double, 6, 1>;
 using PoseJacobian = Eigen::Matrix<double, 6, 6>;
 
+// Gauss-Newton on a handful of poses that are off by centimetres; the limit ends what does not
+// converge. Converged is a step far below any pose's uncertainty.
 constexpr int kIterations = 20;
 constexpr double kConverged = 1e-9;
 
@@ -27,6 +29,7 @@ PoseError Residual(const MapLink& link, const RigidTransform& T_world_a,
 /// for a handful of links.
 template <typename ResidualOf>
 PoseJacobian Differentiate(const RigidTransform& T_world_map, const ResidualOf& residual_of) {
+  // A micrometre and a microradian: small against any mismatch, large against rounding.
   constexpr double kStep = 1e-6;
   PoseJacobian jacobian;
   for (int axis = 0; axis < 6; ++axis) {

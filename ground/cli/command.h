@@ -49,4 +49,9 @@ void AddDemoCommand(CLI::App& app, CommandBody& body);
 void AddExperimentCommand(CLI::App& app, CommandBody& body);
 void AddNucCommand(CLI::App& app, CommandBody& body);
 
+// Those of `isotherm calibrate`.
+void AddCalibrateTimeCommand(CLI::App& calibrate, CommandBody& body);
+void AddCalibrateCameraCommands(CLI::App& calibrate, CommandBody& body);
+void AddCalibrateRigCommand(CLI::App& calibrate, CommandBody& body);
+
 }  // namespace isotherm

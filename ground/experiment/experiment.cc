@@ -19,6 +19,10 @@ constexpr Experiment kExperiments[] = {
     {"scene-influence", "figs. 5.6 to 5.9",
      "What the radiation on other pixels adds to each one is taken out again.",
      &RunSceneInfluenceExperiment},
+    {"calibration", "tables 5.1 to 5.3, fig. 5.12",
+     "A target's holes tell lenses and poses, whatever the target's warp, and how certain they "
+     "are.",
+     &RunCalibrationExperiment},
     {"voxel-size", "fig. 6.3", "Large voxels lose detail, small ones are noisy.",
      &RunVoxelSizeExperiment},
     {"conditional-integration", "fig. 6.4",

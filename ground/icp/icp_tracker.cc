@@ -100,6 +100,7 @@ void NoteFit(const IcpSums& sums, TrackingResult& result) {
 
 /// Returns the step towards the model in the observed directions. Without one `result` is lost.
 std::optional<Vector6> SolveStep(const IcpSums& sums, TrackingResult& result) {
+  // Each correspondence gives one equation.
   constexpr std::int64_t kUnknowns = 6;
   if (sums.inliers < kUnknowns) {
     result.lost = LostReason::kTooFewInliers;

@@ -5,6 +5,9 @@
 namespace isotherm {
 namespace {
 
+// The smooth prediction takes its velocity over eight intervals, a quarter of a second at 30 Hz.
+// More: it lags behind a rig that changes its pace; fewer: it has the noise of single poses, which
+// unobservable directions then drift by. Not tuned.
 constexpr std::size_t kPoses = 9;
 
 /// One missing frame; beyond that velocity says little.

@@ -12,17 +12,22 @@
 namespace isotherm {
 namespace {
 
+// Cells of 4 x 4 pixels have a quarter of a pixel's noise, and temperatures on walls are smooth
+// over them. Larger: fine patterns vanish; smaller: more noise and time. Not tuned.
 constexpr int kHalvings = 2;
 constexpr int kCell = 1 << kHalvings;
 constexpr int kCellPixels = kCell * kCell;
 
 /// Points across the model's view: about 2000 in all.
 constexpr int kPointsAcross = 54;
+// A seventh of what a full view gives. Fewer do not tell an image's shift from its noise. Not
+// tuned.
 constexpr std::size_t kMinSamples = 300;
 /// A reference of which less than this fraction is in view is replaced.
 constexpr double kMinOverlap = 0.6;
 
 constexpr int kMaxIterations = 20;  ///< Two or three do, but after a while without images.
+// Far below a pixel of the reduced image, which is centimetres at scanning distance.
 constexpr double kConverged_m = 1e-4;
 /// Further off than this from the motion before, the image is not where it seems to be.
 constexpr double kMaxShift_m = 0.1;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "common/base/status.h"
+#include "ground/camera_calibration/bundle.h"
+#include "ground/camera_calibration/target.h"
+
+namespace isotherm {
+
+/// Holds what OpenCV's calibration makes of centres of images of features, the board taken as flat.
+struct OpenCvCalibration {
+  LensParameters lens{};
+  std::vector<RigidTransform> T_camera_board;  ///< By view.
+  double rms_px = 0.0;
+};
+
+/// OpenCV's calibrateCamera. `full`: all five coefficients of distortion, else only two radial ones
+/// and the focal lengths, which few or poor views determine as well: where others start.
+Result<OpenCvCalibration> CalibrateWithOpenCv(
+    const CalibrationTarget& target, const std::vector<std::vector<Eigen::Vector2d>>& views,
+    int width, int height, bool full);
+
+/// The pose of a flat target before a camera with a known lens, from centres of images of features.
+RigidTransform FindPose(const CalibrationTarget& target,
+                        const std::vector<Eigen::Vector2d>& features, const LensParameters& lens);
+
+}  // namespace isotherm

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ground/camera_calibration/calibration_report.h"
+#include "ground/camera_calibration/svg_plots.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kStyle =
+    "body{font-family:sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}"
+    "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .6em;"
+    "text-align:right}th:first-child,td:first-child{text-align:left}figure{display:inline-block;"
+    "margin:0 1em 1em 0;vertical-align:top}figcaption{font-size:.9em;color:#555;max-width:32em}"
+    "pre{background:#f4f4f4;padding:1em;overflow-x:auto}svg{max-width:100%;height:auto}";
+
+std::string Figure(const std::string& svg, std::string_view caption) {
+  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, caption);
+}
+
+std::string ParameterTable(const CameraReport& report) {
+  std::string html =
+      "<table><tr><th>parameter</th><th>value</th><th>uncertainty</th><th>from resampled "
+      "views</th><th>off by this, the error grows by 0.1 px</th><th>near borders only</th><th>near "
+      "the middle only</th><th>OpenCV</th></tr>\n";
+  const Eigen::VectorXd spread = report.bootstrap.Covariance().diagonal().cwiseSqrt();
+  for (int i = 0; i < LensParameterCount(report.camera.kind); ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    html +=
+        fmt::format("<tr><td>{}</td><td>{:.7g}</td><td>{:.3g}</td><td>{:.3g}</td><td>{}</td>",
+                    LensParameterName(report.camera.kind, i), report.camera.lens[index],
+                    std::sqrt(report.covariance(i, i)), spread(i),
+                    report.sensitivity.empty() ? std::string("-")
+                                               : fmt::format("{:.3g}", report.sensitivity[index]));
+    for (const CameraReport::Subset& subset : report.subsets)
+      html += fmt::format("<td>{:.6g} &plusmn; {:.2g}</td>", subset.camera.lens[index],
+                          std::sqrt(subset.covariance(i, i)));
+    for (std::size_t missing = report.subsets.size(); missing < 2; ++missing) html += "<td>-</td>";
+    html += report.opencv && report.camera.kind == LensKind::kBrownConrady
+                ? fmt::format("<td>{:.6g}</td></tr>\n", report.opencv->lens[index])
+                : "<td>-</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string CameraHtml(const CameraReport& report) {
+  constexpr double kMagnified = 100.0, kDistance_m = 0.6;
+  std::string html = fmt::format("<h2>{} camera</h2>\n", EscapeHtml(report.name));
+  html += ParameterTable(report);
+  html +=
+      Figure(SvgMap(report.sigmas, "px"),
+             fmt::format("Uncertainty of the projection (one standard deviation, after the best "
+                         "rotation). 1 px is {:.2f} mm at {:.1f} m.",
+                         1e3 * kDistance_m / report.camera.lens[0], kDistance_m));
+  html += Figure(SvgFeatures(report.features_px, report.residuals_px, report.size_px, kMagnified),
+                 fmt::format("Features of all views, and what they are off, {:.0f} times as long.",
+                             kMagnified));
+  if (report.cross_validation) {
+    html +=
+        Figure(SvgMap(report.cross_validation->difference, "px"),
+               fmt::format("Difference between calibrations from two halves of the views: {:.2f} "
+                           "times what is expected.",
+                           report.cross_validation->Ratio()));
+  }
+  html += "<h3>From which views? (as in the thesis's figure 5.12)</h3>\n";
+  for (int i = 0; i < LensParameterCount(report.camera.kind); ++i)
+    html += Figure(SvgHistogram(report.bootstrap.values.col(i),
+                                report.camera.lens[static_cast<std::size_t>(i)],
+                                LensParameterName(report.camera.kind, i)),
+                   "");
+  if (!report.missing.empty()) {
+    html += "<h3>What is missing</h3>\n<ul>\n";
+    for (const std::string& missing : report.missing)
+      html += fmt::format("<li>{}</li>\n", EscapeHtml(missing));
+    html += "</ul>\n";
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string ReportHtml(const CalibrationReport& report) {
+  std::string html = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Calibration</title>"
+      "<style>{}</style></head><body>\n<h1>Calibration</h1>\n<p>{}, {}, from {}</p>\n",
+      kStyle, EscapeHtml(report.date), EscapeHtml(report.software), EscapeHtml(report.source));
+  html += fmt::format("<pre>{}</pre>\n", EscapeHtml(ReportText(report)));
+  for (const CameraReport& camera : report.cameras) html += CameraHtml(camera);
+  return html + "</body></html>\n";
+}
+
+}  // namespace isotherm

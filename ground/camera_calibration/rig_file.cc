@@ -1,0 +1,138 @@
+#include "ground/camera_calibration/rig_file.h"
+
+#include <fmt/format.h>
+
+#include "common/base/output_file.h"
+#include "common/base/read_file.h"
+#include "common/options/text_proto.h"
+#include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::uint64_t kMaxRigBytes = 1U << 20;
+
+void AddCovariance(const Eigen::MatrixXd& covariance, CalibrationRecord& record) {
+  for (Eigen::Index y = 0; y < covariance.rows(); ++y) {
+    for (Eigen::Index x = 0; x < covariance.cols(); ++x) record.add_covariance(covariance(y, x));
+  }
+}
+
+CalibrationRecord CommonRecord(const CalibrationReport& report) {
+  CalibrationRecord record;
+  record.set_date(report.date);
+  record.set_method(report.software);
+  record.set_target(report.target);
+  return record;
+}
+
+CalibrationRecord CameraRecord(const CalibrationReport& report, const CameraReport& camera,
+                               const std::string& serial) {
+  CalibrationRecord record = CommonRecord(report);
+  if (!serial.empty()) record.set_serial(serial);
+  record.set_views(camera.views);
+  record.set_features(camera.features);
+  int refused = 0;
+  for (const RefusedImage& image : report.refused) refused += image.camera == camera.name ? 1 : 0;
+  record.set_refused(refused);
+  record.set_rms_px(camera.error.rms_px);
+  record.set_mae_px(camera.error.mae_px);
+  record.set_uncertainty_px(camera.sigmas.Rms(true));
+  record.set_max_uncertainty_px(camera.sigmas.Max(false));
+  if (camera.cross_validation) record.set_cross_validation(camera.cross_validation->Ratio());
+  std::string names;
+  for (int i = 0; i < LensParameterCount(camera.camera.kind); ++i)
+    names += fmt::format("{}{}", i > 0 ? " " : "", LensParameterName(camera.camera.kind, i));
+  record.set_parameters(names);
+  AddCovariance(camera.covariance, record);
+  return record;
+}
+
+CameraIntrinsics Intrinsics(const CameraReport& report) {
+  const LensParameters& lens = report.camera.lens;
+  CameraIntrinsics intrinsics;
+  intrinsics.set_width(report.size_px.x());
+  intrinsics.set_height(report.size_px.y());
+  intrinsics.set_fx(lens[0]);
+  intrinsics.set_fy(lens[1]);
+  intrinsics.set_cx(lens[2]);
+  intrinsics.set_cy(lens[3]);
+  intrinsics.set_k1(lens[4]);
+  intrinsics.set_k2(lens[5]);
+  intrinsics.set_p1(lens[6]);
+  intrinsics.set_p2(lens[7]);
+  intrinsics.set_k3(lens[8]);
+  return intrinsics;
+}
+
+Status CheckSerial(const std::string& in_file, const std::string& measured, std::string_view name) {
+  if (in_file.empty() || measured.empty() || in_file == measured) return OkStatus();
+  return FailedPrecondition(fmt::format(
+      "the images are of the {} camera with serial number {}, the file is of one with {}: write "
+      "another file",
+      name, measured, in_file));
+}
+
+Status SetCamera(const CalibrationReport& report, const CameraReport& camera,
+                 const std::string& serial, RigCalibration& rig) {
+  const bool thermal = camera.name == "thermal";
+  const std::string& in_file = thermal ? rig.thermal_serial() : rig.depth_serial();
+  if (Status status = CheckSerial(in_file, serial, camera.name); !status.ok()) return status;
+  if (!serial.empty()) {
+    if (thermal) {
+      rig.set_thermal_serial(serial);
+    } else {
+      rig.set_depth_serial(serial);
+    }
+  }
+  const CalibrationRecord record = CameraRecord(report, camera, serial);
+  if (thermal) {
+    *rig.mutable_thermal() = Intrinsics(camera);
+    *rig.mutable_thermal_calibration() = record;
+  } else {
+    *rig.mutable_depth() = Intrinsics(camera);
+    *rig.mutable_depth_calibration() = record;
+  }
+  return OkStatus();
+}
+
+void SetPose(const CalibrationReport& report, RigCalibration& rig) {
+  *rig.mutable_t_thermal_depth() = ToProto(report.pose->T_second_first);
+  CalibrationRecord record = CommonRecord(report);
+  record.set_views(report.pose->views);
+  record.set_uncertainty_px(report.pose->transfer_sigma_px);
+  record.set_parameters("rx ry rz tx ty tz");
+  AddCovariance(report.pose->covariance, record);
+  *rig.mutable_pose_calibration() = record;
+}
+
+}  // namespace
+
+Status UpdateRigFile(const std::filesystem::path& path, const CalibrationReport& report,
+                     const std::vector<std::string>& serials) {
+  RigCalibration rig;
+  std::error_code error;
+  std::optional<std::string> before;
+  if (std::filesystem::exists(path, error)) {
+    const Result<std::string> text = ReadFile(path, kMaxRigBytes);
+    if (!text) return text.error();
+    before = *text;
+    ISOTHERM_RETURN_IF_ERROR(ParseTextProto(*before, path.string(), rig));
+  }
+  for (std::size_t i = 0; i < report.cameras.size(); ++i) {
+    Status status = SetCamera(report, report.cameras[i], serials[i], rig);
+    if (!status.ok()) return status.WithContext(path.string());
+  }
+  if (report.pose) SetPose(report, rig);
+  rig.set_date(report.date);
+  rig.set_method(report.software);
+  rig.set_reprojection_error_px(report.cameras.back().error.rms_px);
+  const std::string text = ToTextProto(rig);
+  // Never write what could not be read again.
+  if (const Result<Rig> read = ParseRigCalibration(text, path.string()); !read) return read.error();
+  if (before) ISOTHERM_RETURN_IF_ERROR(WriteFile(path.string() + ".bak", *before));
+  return WriteFile(path, text);
+}
+
+}  // namespace isotherm

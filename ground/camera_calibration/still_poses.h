@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "common/frame/image.h"
+
+namespace isotherm {
+
+struct StillPoseOptions {
+  /// So many frames in a row must be alike for a pose; of more, the first `max_frames` count.
+  int min_frames = 8;
+  int max_frames = 40;
+};
+
+/// The target held still: the mean of the frames meanwhile, and some of them as they were, which
+/// show how much what is measured in one frame scatters.
+struct StillPose {
+  double begin_s = 0.0, end_s = 0.0;
+  int frames = 0;
+  Image<float> mean;
+  std::vector<Image<float>> samples;
+};
+
+/// Finds, in a stream of images, where nothing moves: neighbouring images differ by noise only, and
+/// not at edges. Offsets that all pixels have in common do not count. NaN has no value.
+/// Thread-compatible.
+class StillPoseFinder {
+ public:
+  explicit StillPoseFinder(const StillPoseOptions& options) : options_(options) {}
+
+  /// Returns the pose that ended with this frame, if one did.
+  std::optional<StillPose> Add(double time_s, const Image<float>& image);
+  /// Returns the pose that the end of the stream ends.
+  std::optional<StillPose> Finish();
+  /// Frames of the present pose.
+  int frames() const { return pose_.frames; }
+
+ private:
+  std::optional<StillPose> Close();
+  void Take(double time_s, const Image<float>& image);
+
+  const StillPoseOptions options_;
+  Image<float> last_;
+  StillPose pose_;
+  Image<float> sum_;
+  Image<std::uint16_t> counts_;
+};
+
+/// Returns whether two images of one camera differ by noise only.
+bool LookAlike(const Image<float>& a, const Image<float>& b);
+
+}  // namespace isotherm
