@@ -306,8 +306,8 @@ class EdgeLoadTest : public ::testing::Test {
   }
 
   /// Whatever the computer did meanwhile: each frame that was due is captured, or counted as lost.
-  /// The number due is known from outside: by the time that capturing took, by what the cameras made
-  /// in it, and by their clocks between the first and the last recorded frame.
+  /// The number due is known from outside: by the time that capturing took, by what the cameras
+  /// made in it, and by their clocks between the first and the last recorded frame.
   void ExpectEachFrameIsAccountedFor() {
     for (const auto& [sensor, made, period] :
          {std::tuple(Sensor::kDepth, made_.depth, kDepthPeriod),
