@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/units.h"
+#include "common/simulation/options.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/target_views.h"
 

@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "ground/camera_calibration/polygon_coverage.h"
+
 namespace isotherm {
 namespace {
 
@@ -16,10 +18,6 @@ using Cell = std::pair<int, int>;
 using Points = std::vector<Eigen::Vector2d>;
 /// Index of the point in each cell of the lattice.
 using Lattice = std::map<Cell, int>;
-
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// The point nearest to `p` within `reach`, or -1.
 int Nearest(const Points& points, const Eigen::Vector2d& p, double reach) {

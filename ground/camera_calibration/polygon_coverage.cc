@@ -6,10 +6,6 @@
 namespace isotherm {
 namespace {
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// Sutherland and Hodgman (1974): keeps what is on one side of the line from `from` to `to`.
 Polygon ClipAtLine(const Polygon& polygon, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                    double sense) {
@@ -71,6 +67,10 @@ void AddEdge(const Eigen::Vector2d& p, const Eigen::Vector2d& q, int height, int
 }
 
 }  // namespace
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 double SignedArea(const Polygon& polygon) {
   double sum = 0.0;

@@ -8,6 +8,9 @@
 
 namespace isotherm {
 
+/// Returns the third component of the cross product of two vectors in a plane.
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+
 /// The corners of a convex polygon, in order.
 using Polygon = std::vector<Eigen::Vector2d>;
 

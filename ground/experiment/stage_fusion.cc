@@ -41,7 +41,7 @@ std::span<const ThermalRule> ThermalRules() {
 
 StageFusion::StageFusion(const ThermalSettings& settings, float min_weight, const ScanModel& model)
     : model_(model),
-      stage_(settings.options, settings.rig, min_weight, counts_, timing_),
+      stage_(settings.options, settings.rig, min_weight, counts_),
       thermal_(model.tsdf().max_blocks(), {}, settings.options.expert().records()) {}
 
 void StageFusion::AfterDepth(const Image<float>& depth_m, ThreadPool& pool) {

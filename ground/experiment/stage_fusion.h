@@ -48,7 +48,6 @@ class StageFusion {
  private:
   const ScanModel model_;
   ScanCounts counts_;
-  StageStats timing_;
   ThermalStage stage_;
   ThermalVolume thermal_;
 };

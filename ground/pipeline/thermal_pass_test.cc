@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "common/testing/volume_shapes.h"
 #include "ground/pipeline/testing/pipeline_fixture.h"
 
 namespace isotherm {
@@ -116,16 +117,16 @@ TEST_F(ThermalPassTest, WhatWasScannedLaterHidesWhatLiesBehindIt) {
   const ScanModel model = pipeline_->model();
   int hot_post = 0, cold_wall = 0, wrong = 0;
   for (std::int32_t block = 0; block < model.tsdf().block_count(); ++block) {
-    ForEachVoxel(model.thermal().voxels(block), model.tsdf().grid(),
-                 model.tsdf().block_coordinates(block),
-                 [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
-                   if (!voxel.measured()) return;
-                   const bool is_hot = voxel.celsius() > 0.5F * (kPostCelsius + kWallCelsius);
-                   const bool is_post = Post(p) < 0.01;
-                   hot_post += is_hot && is_post ? 1 : 0;
-                   cold_wall += !is_hot && !is_post ? 1 : 0;
-                   wrong += is_hot != is_post ? 1 : 0;
-                 });
+    testing::ForEachVoxel(
+        model.thermal().voxels(block), model.tsdf().grid(), model.tsdf().block_coordinates(block),
+        [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+          if (!voxel.measured()) return;
+          const bool is_hot = voxel.celsius() > 0.5F * (kPostCelsius + kWallCelsius);
+          const bool is_post = Post(p) < 0.01;
+          hot_post += is_hot && is_post ? 1 : 0;
+          cold_wall += !is_hot && !is_post ? 1 : 0;
+          wrong += is_hot != is_post ? 1 : 0;
+        });
   }
   EXPECT_GT(hot_post, 50);
   EXPECT_GT(cold_wall, 5'000);

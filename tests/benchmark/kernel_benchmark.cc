@@ -11,6 +11,7 @@
 
 #include "common/base/check.h"
 #include "common/base/units.h"
+#include "common/geometry/map_pose.h"
 #include "ground/icp/icp_tracker.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/depth_preprocessor.h"

@@ -156,7 +156,7 @@ class WallScan {
     const ScanModel& model = pipeline_->model();
     outcome_.sigma_m = model.uncertainty.surface_sigma_m();
     outcome_.fused = model.counts.thermal_fused;
-    outcome_.track_ms = model.stages.Find(Stage::kTrack)->Percentile(50);
+    outcome_.track_ms = model.stages[Stage::kTrack]->Percentile(50);
     return outcome_;
   }
 

@@ -33,6 +33,10 @@ class ProcessorWait {
   Seconds total_{};
 };
 
+/// Edge and ground promise to leave within this after SIGTERM, SIGINT and SIGHUP, while cameras and
+/// disk answer (docs/architecture.md).
+inline constexpr Seconds kTimeToLeave{2.0};
+
 /// Says how a program left that was told to.
 struct Departure {
   std::optional<ExitStatus> status;  ///< nullopt: it still runs.

@@ -15,8 +15,6 @@ namespace {
 /// Far more than any of these needs.
 constexpr Seconds kPatience{60};
 
-Command Shell(const std::string& script) { return {"/bin/sh", {"-c", script}, {}}; }
-
 TEST(DepartureTest, APauseIsTheProgramsOwn) {
   Process program(Shell("trap 'sleep 1; exit 3' TERM; echo ready; while :; do sleep 0.05; done"));
   ASSERT_TRUE(program.WaitForOutput("ready", kPatience));

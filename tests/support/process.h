@@ -25,6 +25,9 @@ struct Command {
       {};  ///< Standard output goes here instead of being collected.
 };
 
+/// Returns the command that has the system's shell run `script`.
+inline Command Shell(const std::string& script) { return {"/bin/sh", {"-c", script}, {}}; }
+
 /// How a child ended: exit status, or 128 + signal number as a shell would say.
 using ExitStatus = int;
 

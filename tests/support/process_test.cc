@@ -9,8 +9,6 @@ namespace {
 /// Far more than any of these needs.
 constexpr Seconds kPatience{20};
 
-Command Shell(const std::string& script) { return {"/bin/sh", {"-c", script}, {}}; }
-
 TEST(ProcessTest, CollectsOutputAndExitStatus) {
   const Finished finished = RunToEnd(Shell("echo out; echo err >&2; exit 3"), kPatience);
   EXPECT_EQ(finished.status, 3);

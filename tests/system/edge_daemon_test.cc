@@ -24,6 +24,7 @@ using std::chrono::seconds;
 using system_test::Command;
 using system_test::Departure;
 using system_test::Finished;
+using system_test::kTimeToLeave;
 using system_test::Leave;
 using system_test::NotifySocket;
 using system_test::Process;
@@ -33,8 +34,6 @@ using testing::HasSubstr;
 
 /// For things that take a fraction of it on an idle computer.
 constexpr Seconds kPatience{60};
-/// The daemon promises to leave so soon after SIGTERM.
-constexpr Seconds kTimeToLeave{2.0};
 constexpr int kFrames = kSmallScanFrames;
 
 struct Counts {

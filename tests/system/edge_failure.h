@@ -22,9 +22,7 @@ namespace isotherm::system_test {
 inline constexpr const char* kWatchdog = "WATCHDOG_USEC=10000000";
 inline constexpr Seconds kWatchdogSec{10};
 inline constexpr const char* kFed = "WATCHDOG=1";
-/// The daemon promises to leave so soon after SIGTERM, ...
-inline constexpr Seconds kTimeToLeave{2.0};
-/// ... and gives this to a disk that does not answer (kDisk of stop_limits).
+/// The daemon gives this to a disk that does not answer (kDisk of stop_limits).
 inline constexpr Seconds kForTheDisk{3.5};
 
 /// How often `words` stand in `text`.

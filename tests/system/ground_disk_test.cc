@@ -25,8 +25,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::TemporaryDirectory;
 
-/// The ground promises to leave so soon after SIGTERM, with the results of a small scan.
-constexpr Seconds kTimeToLeave{2.0};
 
 /// Waits for a file that another process makes.
 bool WaitForFile(const std::filesystem::path& path, Seconds patience) {

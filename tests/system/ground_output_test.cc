@@ -25,8 +25,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-constexpr Seconds kTimeToLeave{2.0};
-
 class GroundOutputTest : public GroundDiskTest {
  protected:
   /// The folders of scans that have their results; stats.json is the last of them.

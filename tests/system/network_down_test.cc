@@ -14,8 +14,6 @@
 namespace isotherm::system_test {
 namespace {
 
-/// The daemons promise to leave so soon after SIGTERM.
-constexpr Seconds kTimeToLeave{2.0};
 
 class NetworkDownTest : public TwoHostsTest {
  protected:
