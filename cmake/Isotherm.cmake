@@ -139,8 +139,8 @@ set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clo
 # isotherm_test(NAME <name> [NO_UNITY] SRCS <files> [ALONE <some of them>] [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>]
 #   [SHARDS <number>])
 # SHARDS: the program's cases are run by so many of ctest's tests, which may run at the same time: NAME, NAME_2, ...
-# Labels: unit (default), integration, system, hardware, lint; experiment (figures of the thesis, which sanitizers need not
-# assess); threads is added to what isotherm_threaded_tests names.
+# Labels: unit (default), integration, system, hardware, lint; experiment (figures of the thesis) and scan (figures of whole
+# scans), which sanitizers need not assess; threads is added to what isotherm_threaded_tests names.
 function(isotherm_test)
   cmake_parse_arguments(ARG "NO_UNITY" "NAME;TIMEOUT;SHARDS" "SRCS;ALONE;DEPS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
@@ -201,7 +201,7 @@ function(isotherm_test)
       set_tests_properties(${test} PROPERTIES
         ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
     endif()
-    if("integration" IN_LIST ARG_LABELS)  # The longest begin first, so that none is left alone at the end.
+    if(ARG_LABELS MATCHES "integration|scan")  # The longest begin first, so that none is left alone at the end.
       set_tests_properties(${test} PROPERTIES COST ${ARG_TIMEOUT})
     endif()
   endforeach()

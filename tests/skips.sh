@@ -7,7 +7,7 @@ list=$(dirname "${BASH_SOURCE[0]}")/skips.txt
 
 # Cases of test programs, which ctest calls passed, and tests that ctest itself calls skipped (exit status 77).
 skipped=$({
-  sed -nE 's/^\[  SKIPPED \] ([A-Za-z0-9_]+\.[A-Za-z0-9_/]+) \(.*$/\1/p' "$details"
+  sed -nE 's/^\[  SKIPPED \] ([A-Za-z0-9_\/]+\.[A-Za-z0-9_\/]+) \(.*$/\1/p' "$details"
   sed -nE 's/^.*Test +#[0-9]+: ([^ ]+) \.*\*\*\*Skipped.*$/\1/p' "$printed"
 } | sort -u)
 [ -n "$skipped" ] || exit 0

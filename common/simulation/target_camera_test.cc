@@ -104,17 +104,22 @@ TEST(TargetCameraTest, CentroidOfAHoleOnTheAxisIsItsCentre) {
   const Eigen::Vector2d centre = board.HoleCentre(17);
   const RigidTransform pose =
       MakeTransform(Eigen::Vector3d(-centre.x(), -centre.y(), 0.7), Eigen::Quaterniond::Identity());
-  const Image<std::uint8_t> image = TargetCamera(camera, Noiseless()).Infrared(board, pose, 1);
+  const Image<std::uint16_t> image = TargetCamera(camera, Noiseless()).Thermal(board, pose, 1);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double total = 0.0;
   constexpr int kHalf_px = 11;
   const int u = 119, v = 101;
-  const double face = image.At(u + kHalf_px, v);
+  // The face beside the hole is not everywhere alike.
+  std::uint16_t face = 0;
+  for (int i = -kHalf_px; i <= kHalf_px; ++i) {
+    for (const int side : {-kHalf_px, kHalf_px})
+      face = std::max({face, image.At(u + i, v + side), image.At(u + side, v + i)});
+  }
   for (int y = v - kHalf_px; y <= v + kHalf_px; ++y) {
     for (int x = u - kHalf_px; x <= u + kHalf_px; ++x) {
-      const double dark = std::max(0.0, face - image.At(x, y));
-      sum += dark * Eigen::Vector2d(x, y);
-      total += dark;
+      const double hot = std::max(0.0, static_cast<double>(image.At(x, y) - face));
+      sum += hot * Eigen::Vector2d(x, y);
+      total += hot;
     }
   }
   EXPECT_NEAR((sum / total - Eigen::Vector2d(camera.cx, camera.cy)).norm(), 0.0, 0.03);

@@ -141,8 +141,8 @@ TEST_F(P1Test, CorrectionIsInferredFromImagesThatStandStill) {
   const auto source = Open();
   const std::vector<RawFrame> frames = ReadFrames(*source, 30);
   ASSERT_EQ(frames.size(), 30U) << failure_.message();
-  EXPECT_EQ(source->counts().repeated, 3U);
-  EXPECT_EQ(source->counts().frozen, 17U);
+  EXPECT_EQ(source->counts().repeated, 2U);
+  EXPECT_EQ(source->counts().frozen, 18U);
   EXPECT_EQ(frames[10].camera_nuc->state, NucState::kInProgress);
   EXPECT_EQ(frames[10].camera_nuc->source, NucSource::kInferred);
   EXPECT_FALSE(frames.back().shutter_closed);

@@ -29,7 +29,8 @@ TEST(CalibrationCoachTest, UncertaintyShrinksAndLessIsMissingAsViewsCome) {
   EXPECT_EQ(status.refused, 0);
   // From the sixth view on.
   ASSERT_EQ(uncertainties.size(), 11U);
-  EXPECT_LT(uncertainties.back(), 0.5 * uncertainties.front());
+  // By their number alone, sixteen views are 0.61 times as uncertain as six.
+  EXPECT_LT(uncertainties.back(), 0.61 * uncertainties.front());
   EXPECT_LT(status.missing.size(), missing_at_start);
   EXPECT_GT(status.zones[4], 0);
   EXPECT_GT(*status.max_uncertainty_px, *status.uncertainty_px);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -170,7 +173,9 @@ Status PrepareOutputDir(const fs::path& dir) {
   }
   // Permissions, quotas and read-only mounts show only when something is written. It is tried now
   // rather than after an hour of reconstruction.
-  const fs::path probe = dir / ".isotherm-write-test";
+  // The service may look at a folder from two threads at once.
+  static std::atomic<int> looks = 0;
+  const fs::path probe = dir / fmt::format(".isotherm-write-test-{}-{}", ::getpid(), ++looks);
   if (Status status = WriteFile(probe, "x"); !status.ok()) {
     return status.WithContext("the output folder cannot be written");
   }

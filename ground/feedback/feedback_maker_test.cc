@@ -169,7 +169,7 @@ TEST_F(FeedbackMakerTest, TheSurfaceOfAllSubMapsCounts) {
   const SurfaceAreas first = maker_->areas();
   ASSERT_GT(first.total_m2(), 0.1);
   for (int i = 0; i < 5; ++i) ShowNothing();
-  Show(90.0);
+  for (int i = 0; i < 6; ++i) Show(90.0);
   ASSERT_EQ(pipeline_->model().atlas.size(), 2);
   ThinkAhead(50);
   // One that has seen the second sub-map only.

@@ -21,10 +21,10 @@ TEST(MessageJsonTest, DefaultsEnumsAndNumbersAreWhatAReaderExpects) {
   options.mutable_renderer()->set_scale(FIXED);
   const Json json = ToJson(options);
   EXPECT_EQ(json.at("threads"), 3);
-  EXPECT_EQ(json.at("volume").at("max_memory_bytes"), 1LL << 40);
+  EXPECT_EQ(json.at("volume").at("expert").at("max_memory_bytes"), 1LL << 40);
   EXPECT_EQ(json.at("renderer").at("scale"), "FIXED");
   // Of a stage that nobody has touched.
-  EXPECT_EQ(json.at("tsdf").at("truncation_distance_m"),
+  EXPECT_EQ(json.at("tsdf").at("expert").at("truncation_distance_m"),
             TsdfOptions::default_instance().expert().truncation_distance_m());
 }
 

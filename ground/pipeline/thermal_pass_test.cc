@@ -16,15 +16,17 @@ namespace {
 
 constexpr float kPostCelsius = 90.0F, kWallCelsius = 30.0F;
 /// The rig goes to the left by this from frame to frame, so that the depth camera comes to see what
-/// only the thermal camera, 2 cm to its left, saw at the beginning.
+/// only the thermal camera, 6 cm to its left, saw at the beginning.
 constexpr double kLeft_m = 0.003;
+/// It begins so far to the right that the volume does not end where it comes to look.
+constexpr double kBegin_m = 0.10;
 constexpr int kFrames = 24;
 
 /// A wall with a ball on it, so that all directions are held, and at the left a thin hot post
 /// before it. Metres, `world`.
 double Post(const Eigen::Vector3d& p) {
   const Eigen::Vector3d q =
-      (p - Eigen::Vector3d(0.119, 0.26, 0.30)).cwiseAbs() - Eigen::Vector3d(0.011, 0.2, 0.011);
+      (p - Eigen::Vector3d(0.125, 0.26, 0.45)).cwiseAbs() - Eigen::Vector3d(0.011, 0.2, 0.011);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 double WallWithPost(const Eigen::Vector3d& p) {
@@ -33,9 +35,12 @@ double WallWithPost(const Eigen::Vector3d& p) {
 
 class ThermalPassTest : public testing::PipelineFixture {
  protected:
+  ThermalPassTest() {
+    rig_.T_thermal_depth = MakeTransform({0.06, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  }
   static RigidTransform Pose(double frame) {
     return testing::FirstPose() *
-           MakeTransform({-kLeft_m * frame, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+           MakeTransform({kBegin_m - kLeft_m * frame, 0.0, 0.0}, Eigen::Quaterniond::Identity());
   }
 
   DepthFrame DepthAt(int frame) const {
@@ -64,8 +69,13 @@ class ThermalPassTest : public testing::PipelineFixture {
     return thermal;
   }
 
+  void StartHere() {
+    auto created = GroundPipeline::Create(options_, rig_, Pose(0));
+    ASSERT_TRUE(created.has_value()) << created.error().message();
+    pipeline_ = std::move(*created);
+  }
   void Scan() {
-    Start();
+    StartHere();
     pipeline_->ProcessDepth(DepthAt(0));
     pipeline_->ProcessThermal(ThermalAt(0.5));
     for (int i = 1; i < kFrames; ++i) pipeline_->ProcessDepth(DepthAt(i));
@@ -100,9 +110,9 @@ TEST_F(ThermalPassTest, SurfaceThatTheDepthCameraSawOnlyLaterTakesTheTemperature
   Scan();
   // Half-way between the left border of the depth camera's first view and that of the thermal
   // camera's.
-  const double z_m = OnSurface(scene_, 0.02, 0.20).z();
+  const double z_m = OnSurface(scene_, 0.08, 0.20).z();
   const double border = 159.5 / 285.0;
-  const Eigen::Vector3d p = OnSurface(scene_, 0.29 - border * z_m, 0.20);
+  const Eigen::Vector3d p = OnSurface(scene_, 0.37 - border * z_m, 0.20);
   ASSERT_NEAR(p.z(), z_m, 0.02);
   EXPECT_FALSE(At(p).measured()) << "not in the first depth frame";
   ScanAgain();
@@ -145,7 +155,7 @@ TEST_F(ThermalPassTest, CountsAreThoseOfThePassAlone) {
 }
 
 TEST_F(ThermalPassTest, FramesAroundALossHaveNoPose) {
-  Start();
+  StartHere();
   pipeline_->ProcessDepth(DepthAt(0));
   pipeline_->ProcessThermal(ThermalAt(0.5));
   pipeline_->ProcessDepth(DepthAt(1));
@@ -162,7 +172,7 @@ TEST_F(ThermalPassTest, FramesAroundALossHaveNoPose) {
 }
 
 TEST_F(ThermalPassTest, WithoutTemperaturesThereIsNothingToDo) {
-  Start();
+  StartHere();
   for (int i = 0; i < 3; ++i) pipeline_->ProcessDepth(DepthAt(i));
   pipeline_->Finish();
   EXPECT_EQ(pipeline_->BeginThermalPass(), nullptr);

@@ -60,7 +60,8 @@ const FolderArrows& Arrows() {
         "common/png", "common/codec", "common/rig", "common/options", "common/recording"}},
       {"common/simulation",
        {"common/base", "common/time", "common/concurrency", "common/geometry", "common/frame",
-        "common/radiometry", "common/codec", "common/rig", "common/options", "common/recording"}},
+        "common/radiometry", "common/simd", "common/codec", "common/rig", "common/options",
+        "common/recording"}},
       {"common/transport",
        {"common/base", "common/time", "common/geometry", "common/frame", "common/messages"}},
       // The edge: what a camera is; stamps, shutter, frames; where they go; what joins it.
@@ -80,7 +81,7 @@ const FolderArrows& Arrows() {
         "edge/spool", "edge/publisher"}},
       {"edge/daemon",
        {"common/transport", "edge/options", "edge/frame_counters", "edge/source",
-        "edge/timestamper", "edge/camera_process", "edge/openni", "edge/thermal_camera",
+        "edge/timestamper", "edge/camera_process", "edge/openni", "edge/thermal_camera", "edge/nuc",
         "edge/spool", "edge/publisher", "edge/pipeline"}},
       // The ground: frames in; poses; the model; what is made of it; what joins, assesses and runs
       // it.

@@ -4,9 +4,10 @@
 #include <iterator>
 #include <map>
 #include <optional>
-#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
+#include <string_view>
 
 namespace isotherm::lint {
 namespace {
@@ -23,21 +24,30 @@ std::string TextOf(const SourceFile& file) {
 }
 
 std::vector<std::string> Words(const std::string& text) {
-  static const std::regex kWord(R"(\S+)");
-  std::vector<std::string> words;
-  for (std::sregex_iterator word(text.begin(), text.end(), kWord), end; word != end; ++word)
-    words.push_back(word->str());
-  return words;
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/// Returns what stands between `call` and the next bracket that closes, from `at` on, which is
+/// moved behind it; nullopt if there is no such call any more.
+std::optional<std::string> NextArguments(const std::string& text, std::string_view call,
+                                         std::size_t& at) {
+  const std::size_t begin = text.find(call, at);
+  if (begin == std::string::npos) return std::nullopt;
+  const std::size_t end = text.find(')', begin);
+  if (end == std::string::npos) return std::nullopt;
+  at = end + 1;
+  return text.substr(begin + call.size(), end - begin - call.size());
 }
 
 std::set<std::string> Listed(const Files& files) {
   const auto list = files.find(kListFile);
   if (list == files.end()) return {};
-  static const std::regex kSet(R"(set\(isotherm_threaded_tests\s([^)]*)\))");
-  std::smatch found;
-  const std::string text = TextOf(*list->second);
-  if (!std::regex_search(text, found, kSet)) return {};
-  const std::vector<std::string> words = Words(found[1]);
+  std::size_t at = 0;
+  const std::optional<std::string> names =
+      NextArguments(TextOf(*list->second), "set(isotherm_threaded_tests", at);
+  if (!names) return {};
+  const std::vector<std::string> words = Words(*names);
   return {words.begin(), words.end()};
 }
 
@@ -63,13 +73,14 @@ struct DeclaredTest {
 };
 
 std::vector<DeclaredTest> TestsIn(const SourceFile& cmake) {
-  static const std::regex kTest(R"(isotherm_test\(\s*NAME\s+(\S+)([^)]*)\))");
   std::vector<DeclaredTest> tests;
   const std::string text = TextOf(cmake);
-  for (std::sregex_iterator test(text.begin(), text.end(), kTest), end; test != end; ++test) {
-    const std::vector<std::string> words = Words((*test)[2]);
+  std::size_t at = 0;
+  while (const std::optional<std::string> arguments = NextArguments(text, "isotherm_test(", at)) {
+    const std::vector<std::string> words = Words(*arguments);
+    if (words.size() < 2 || words[0] != "NAME") continue;
     if (std::find(words.begin(), words.end(), "system") != words.end()) continue;
-    DeclaredTest declared{(*test)[1], {}};
+    DeclaredTest declared{words[1], {}};
     for (const std::string& word : words) {
       if (word.ends_with(".cc")) declared.sources.push_back(cmake.folder() + "/" + word);
     }

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -79,11 +80,12 @@ TEST_F(GroundOutputTest, F38ATerminalThatIsGoneLeavesResultsAndACompleteRecordin
 
 TEST_F(GroundOutputTest, F38AReaderOfItsMessagesThatIsGoneEndsNoScan) {
   OutputPipe pipe(folder_.path());
-  NotifySocket manager(folder_.path());
+  std::optional<NotifySocket> manager(std::in_place, folder_.path());
   Command command = pipe.From(Ground({"--log-level", "debug"}));
-  command.environment.push_back(manager.environment());
+  command.environment.push_back(manager->environment());
   Process ground(command);
-  ASSERT_TRUE(manager.WaitFor("READY=1", kPatience));
+  ASSERT_TRUE(manager->WaitFor("READY=1", kPatience));
+  manager.reset();  // One that does not read would hold the ground up.
   pipe.CloseAll();
   ExpectTwoScansAndALeave(ground);
 }
@@ -106,14 +108,15 @@ TEST_F(GroundOutputTest, F39AFullPipeOfSummariesThatNobodyReadsIsNoStuckDisk) {
 }
 
 TEST_F(GroundOutputTest, F31AnOutputFolderThatIsMissingIsWaitedForAndHasTheScanFromThereOn) {
-  NotifySocket manager(folder_.path());
+  std::optional<NotifySocket> manager(std::in_place, folder_.path());
   // Where a file is, not even root can make a folder.
   std::ofstream(Path("ground")).put('x');
   Command command = Ground();
-  command.environment.push_back(manager.environment());
+  command.environment.push_back(manager->environment());
   Process ground(command);
-  ASSERT_TRUE(manager.WaitFor("READY=1", kPatience)) << ground.output();
-  EXPECT_TRUE(manager.WaitForText("NO OUTPUT FOLDER", kPatience)) << ground.output();
+  ASSERT_TRUE(manager->WaitFor("READY=1", kPatience)) << ground.output();
+  EXPECT_TRUE(manager->WaitForText("NO OUTPUT FOLDER", kPatience)) << ground.output();
+  manager.reset();  // One that does not read would hold the ground up.
   Process edge(EndlessEdge());
   ASSERT_TRUE(edge.WaitForOutput("tracked", kPatience)) << "its operator is guided all the same";
   std::filesystem::remove(Path("ground"));
