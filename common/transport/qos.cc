@@ -76,8 +76,9 @@ QosPtr MakeQos(TopicId topic) {
 
 QosPtr MakeReaderQos(TopicId topic) {
   QosPtr qos = MakeQos(topic);
+  // Twice what a writer keeps, for the samples of another process that uses the same name.
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST,
-                   std::max(ProfileOf(topic).history, kMinReaderHistory));
+                   std::max(2 * ProfileOf(topic).history, kMinReaderHistory));
   return qos;
 }
 
