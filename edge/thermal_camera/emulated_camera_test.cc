@@ -213,7 +213,8 @@ TEST_F(EmulatedCameraTest, P2ProStreamsAtHighSpeedAndIsToldNotToCorrectForEmissi
   ExpectRamp(frames[3], 1.0 / 64, EmulatedP2Pro::kFirstCount, EmulatedP2Pro::kNoise);
   EXPECT_FALSE(frames[3].has_device_clock);
   EXPECT_FALSE(frames[3].camera_nuc.has_value());  // It does not answer yet.
-  EXPECT_EQ(frames.back().frame_number, 89U);
+  // On a busy computer some are not read in time, and counted.
+  EXPECT_EQ(frames.back().frame_number, 89U + source->counts().lost);
   // After three seconds: emissivity and transmission 1, and the shutter is asked.
   EXPECT_EQ(camera->emissivity(), 127);
   EXPECT_EQ(camera->gain(), 0);
