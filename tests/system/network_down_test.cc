@@ -14,7 +14,6 @@
 namespace isotherm::system_test {
 namespace {
 
-
 class NetworkDownTest : public TwoHostsTest {
  protected:
   void SetUp() override {
