@@ -14,7 +14,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
-using testing::kPeriod;
 using testing::Script;
 using testing::ScriptedCamera;
 
@@ -59,7 +58,7 @@ class ThermalCameraSourceTest : public ::testing::Test {
     frame.nuc = CameraNuc{NucState::kIdle, NucSource::kInBand, 4.0};
     return frame;
   }
-  void Send(RawThermalFrame frame) {
+  void Send(const RawThermalFrame& frame) {
     script_.reads.push_back([frame] { return std::optional(frame); });
   }
   /// The next item; a failure of Read ends the test's patience.

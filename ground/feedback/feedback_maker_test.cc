@@ -124,7 +124,7 @@ TEST_F(FeedbackMakerTest, InARotatedSubMapPoseAndUncertaintyAreBothInWorld) {
   Start();
   BeginRolledElsewhere();
   Feedback feedback;
-  for (double roll_deg = 87.0; roll_deg > 0.0; roll_deg -= 3.0) feedback = Show(roll_deg);
+  for (int roll_deg = 87; roll_deg > 0; roll_deg -= 3) feedback = Show(roll_deg);
   for (int i = 0; i < 80 && !pipeline_->model().atlas.active().joined; ++i) feedback = Show();
   ASSERT_TRUE(pipeline_->model().atlas.active().joined) << "the rig sees what it began with";
   ASSERT_EQ(pipeline_->model().atlas.active_index(), 1);

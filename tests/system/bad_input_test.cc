@@ -144,8 +144,9 @@ TEST_F(BadInputTest, OutputThatCannotBeCreatedIsNamed) {
   ExpectOneSentence(RunTool({"import", dataset_.path(), "-o", below + ".mcap"}), cannot_create,
                     "file");
   const std::string domain = std::to_string(TestDomain());
+  // As a service it waits for the folder.
   ExpectOneSentence(
-      RunToEnd({GroundService(), {"--domain", domain, "--output", below}, {}}, kPatience),
+      RunToEnd({GroundService(), {"--domain", domain, "--output", below, "--once"}, {}}, kPatience),
       cannot_create, "file");
   const Finished edge =
       RunToEnd({EdgeDaemon(),
