@@ -65,7 +65,7 @@ Lattice Grow(const Points& points, int from, const Eigen::Vector2d& right,
   while (!fronts.empty()) {
     const Front front = fronts.front();
     fronts.pop_front();
-    const Eigen::Vector2d at = points[static_cast<std::size_t>(lattice[front.cell])];
+    const Eigen::Vector2d& at = points[static_cast<std::size_t>(lattice[front.cell])];
     for (const auto& [dx, dy] : {Cell(1, 0), Cell(-1, 0), Cell(0, 1), Cell(0, -1)}) {
       const Cell cell(front.cell.first + dx, front.cell.second + dy);
       if (lattice.contains(cell)) continue;
