@@ -17,7 +17,10 @@ const Eigen::Vector2i kSize(300, 200);
 
 std::vector<Eigen::Vector2d> Around(double x, double y) {
   std::vector<Eigen::Vector2d> features;
-  for (int i = 0; i < 36; ++i) features.emplace_back(x + 3.0 * (i % 6), y + 3.0 * (i / 6));
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column)
+      features.emplace_back(x + 3.0 * column, y + 3.0 * row);
+  }
   return features;
 }
 
