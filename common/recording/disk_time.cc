@@ -4,15 +4,14 @@
 
 #include <cmath>
 
+#include "common/base/units.h"
+
 namespace isotherm {
 
 std::string DiskTimeText(double left_s) {
-  constexpr double kSecondsPerMinute = 60.0;
-  constexpr double kMinutesPerHour = 60.0;
   if (std::isnan(left_s)) return {};
-  const double minutes = left_s / kSecondsPerMinute;
-  if (minutes < 2.0 * kMinutesPerHour) return fmt::format("disk: {:.0f} min left", minutes);
-  const double hours = minutes / kMinutesPerHour;
+  if (left_s < 2.0 * kSPerHour) return fmt::format("disk: {:.0f} min left", left_s / kSPerMin);
+  const double hours = left_s / kSPerHour;
   return hours < 100.0 ? fmt::format("disk: {:.0f} h left", hours) : "disk: days left";
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstring>
 
+#include "common/base/log.h"
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
 #include "common/transport/instance_limit.h"
@@ -159,6 +160,7 @@ struct Reader<Message>::Impl {
   DdsHandle publications;      ///< All that the participant knows of; there while it is flooded.
   std::uint64_t flooding = 0;  ///< The writer that floods it with names; 0: none.
   int taken_back = 0;          ///< Names that the reader has state of, and no sample.
+  bool is_closed = false;      ///< It could not be made anew, and is tried again.
   WireSample<Message> sample;  // Reused, so that its payload buffer is allocated once.
 
   Status OpenReader(Past past) {
@@ -190,6 +192,13 @@ struct Reader<Message>::Impl {
       if (taken_back == kMaxTakenBack) flooding = info.publication_handle;
     }
   }
+  void Reopen(Past past) {
+    const Status status = OpenReader(past);
+    if (!status.ok() && !is_closed) {
+      LOG(Transport, Error) << status.message();
+    }
+    is_closed = !status.ok();
+  }
   /// While the writer that floods it is there, its past would flood it again, so that it does
   /// without any: what comes from now on comes, and rigs that start meanwhile may not be seen.
   void Heal() {
@@ -197,11 +206,13 @@ struct Reader<Message>::Impl {
       refusals->Add(RefusalCause::kTooManyNames, TopicName(kTopic));
       publications = DdsHandle(
           dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
-      static_cast<void>(OpenReader(Past::kNone));
+      Reopen(Past::kNone);
     } else if (flooding != 0 && !IsThere(flooding)) {
       flooding = 0;
       publications = DdsHandle();
-      static_cast<void>(OpenReader(Past::kKept));
+      Reopen(Past::kKept);
+    } else if (is_closed) {
+      Reopen(flooding != 0 ? Past::kNone : Past::kKept);
     }
   }
   /// Returns whether a writer is known to the participant, matched or not.

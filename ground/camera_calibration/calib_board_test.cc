@@ -162,8 +162,9 @@ TEST_F(CalibMaskTest, NearlyAllImagesCountAndFocalLengthsAreThoseOfTheOwners) {
   // One shows a mask that is bent otherwise.
   EXPECT_GE(result->view_names.size(), 19U);
   EXPECT_LE(rms, 0.45);
-  // All views are from one distance, and their tilts to one side: half a per cent is one sigma.
-  EXPECT_NEAR(lens[0] / 608.531, 1.0, 0.015);
+  // All views are from one distance, and their tilts to one side: half a per cent is one sigma, and
+  // the second focal length is not met to one per cent.
+  EXPECT_NEAR(lens[0] / 608.531, 1.0, 0.01);
   EXPECT_NEAR(lens[1] / 609.756, 1.0, 0.015);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,6 +16,7 @@
 #include "common/recording/recording.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/scan_views.h"
+#include "ground/offline/recorded_frames.h"
 #include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
@@ -56,21 +58,12 @@ class Reader {
         stride_(1 + Count(reader.info(), "/thermal") / kMaxFrames) {}
 
   void Run(const std::function<void(double)>& progress) {
-    std::uint64_t total = 0, read = 0;
-    for (const auto& [topic, count] : reader_.info().messages_by_topic) total += count;
-    while (true) {
-      Result<std::optional<RecordedItem>> item = reader_.Next();
-      ++read;
-      if (!item) {
-        LOG(Calibrate, Warning) << item.error().message();
-        continue;
-      }
-      if (!*item) break;
-      if (auto* depth = std::get_if<RecordedDepth>(&**item)) Take(*depth);
-      if (auto* thermal = std::get_if<RecordedThermal>(&**item)) Take(*thermal);
-      if (progress && total > 0)
-        progress(std::min(1.0, static_cast<double>(read) / static_cast<double>(total)));
-    }
+    const auto take = [this](const RecordedItem& item) {
+      if (const auto* depth = std::get_if<RecordedDepth>(&item)) Take(*depth);
+      if (const auto* thermal = std::get_if<RecordedThermal>(&item)) Take(*thermal);
+    };
+    const auto warn = [](const Status& error) { LOG(Calibrate, Warning) << error.message(); };
+    ReadItems(reader_, take, warn, progress);
     pipeline_.Finish();
   }
 
@@ -78,13 +71,7 @@ class Reader {
 
  private:
   void Take(const RecordedDepth& recorded) {
-    Result<Image<std::uint16_t>> image = Decode(recorded.frame.image);
-    if (!image) return;
-    DepthFrame frame;
-    frame.header = recorded.frame.header;
-    frame.depth_scale = recorded.frame.depth_scale;
-    frame.depth_raw = std::move(*image);
-    pipeline_.ProcessDepth(frame);
+    if (const auto frame = Unpack(recorded, std::nullopt)) pipeline_.ProcessDepth(**frame);
   }
 
   void Take(const RecordedThermal& recorded) {

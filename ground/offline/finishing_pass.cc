@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <variant>
 
@@ -54,17 +53,10 @@ Status FuseOnFinishedSurface(const FirstPass& first, ThermalPass& pass,
                              const std::function<void(double)>& progress) {
   const Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(first.recording);
   if (!reader) return reader.error();
-  std::uint64_t total = 0, read = 0;
-  for (const auto& [topic, count] : (*reader)->info().messages_by_topic) total += count;
   FinishingDriver driver(first, pass);
-  while (true) {
-    Result<std::optional<RecordedItem>> item = (*reader)->Next();
-    ++read;
-    if (item && !*item) break;
-    if (item) driver.Take(**item);
-    if (progress && total > 0)
-      progress(std::min(1.0, static_cast<double>(read) / static_cast<double>(total)));
-  }
+  const auto told_before = [](const Status& /*error*/) {};
+  ReadItems(
+      **reader, [&driver](const RecordedItem& item) { driver.Take(item); }, told_before, progress);
   driver.Finish();
   return OkStatus();
 }

@@ -57,9 +57,7 @@ class InlineDriver {
         pipeline_(pipeline),
         plausibility_(rig),
         delay_check_(request.options.delay_check(), rig, CalibratedDelay(reader.info(), rig)),
-        assembler_(rig.thermal.has_value()) {
-    for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
-  }
+        assembler_(rig.thermal.has_value()) {}
 
   /// From here on, every so-many-th valid thermal frame is kept from the pipeline.
   void HoldOut(int every) { hold_out_every_ = every; }
@@ -67,20 +65,18 @@ class InlineDriver {
   const std::vector<CaptureTime>& held_out() const { return held_out_; }
 
   Status Run() {
-    while (true) {
-      Result<std::optional<RecordedItem>> item = reader_.Next();
-      ++read_;
-      if (!item) {
-        ++bad_messages_;
-        LOG(Reconstruct, Warning) << item.error().message();
-        continue;
-      }
-      if (!*item) break;
-      std::visit([this](auto& recorded) { Take(recorded); }, **item);
+    const auto take = [this](RecordedItem& item) {
+      std::visit([this](auto& recorded) { Take(recorded); }, item);
       // As many as are complete: memory does not grow with the recording.
       while (const auto frame = assembler_.Pop()) Process(*frame);
-      Report();
-    }
+    };
+    const auto fail = [this](const Status& error) {
+      ++bad_messages_;
+      LOG(Reconstruct, Warning) << error.message();
+    };
+    ReadItems(reader_, take, fail, [this](double fraction) {
+      if (request_.progress) request_.progress(kFramesFraction * fraction, "reconstructing");
+    });
     // Frames that wait for a partner: none will come.
     while (const auto frame = assembler_.Flush()) Process(*frame);
     pipeline_.Finish([this](double fraction) {
@@ -168,12 +164,6 @@ class InlineDriver {
         });
   }
 
-  void Report() const {
-    if (!request_.progress || total_ == 0) return;
-    const double fraction = std::min(1.0, static_cast<double>(read_) / static_cast<double>(total_));
-    request_.progress(kFramesFraction * fraction, "reconstructing");
-  }
-
   const ReconstructRequest& request_;
   RecordingReader& reader_;
   const Nanoseconds thermal_delay_;
@@ -184,8 +174,6 @@ class InlineDriver {
   int hold_out_every_ = 0;  ///< 0 = none.
   int valid_thermal_ = 0;
   std::vector<CaptureTime> held_out_;
-  std::uint64_t total_ = 0;
-  std::uint64_t read_ = 0;
   std::uint64_t bad_messages_ = 0;
   std::uint64_t undecodable_depth_ = 0, undecodable_thermal_ = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -16,6 +18,26 @@ Status LeftOut(const char* stream, const FrameHeader& header, const Status& erro
 }
 
 }  // namespace
+
+void ReadItems(RecordingReader& reader, const std::function<void(RecordedItem&)>& take,
+               const std::function<void(const Status&)>& fail,
+               const std::function<void(double)>& progress) {
+  std::uint64_t total = 0, read = 0;
+  for (const auto& [topic, count] : reader.info().messages_by_topic) total += count;
+  while (true) {
+    Result<std::optional<RecordedItem>> item = reader.Next();
+    ++read;
+    if (!item) {
+      fail(item.error());
+    } else if (!*item) {
+      return;
+    } else {
+      take(**item);
+      if (progress && total > 0)
+        progress(std::min(1.0, static_cast<double>(read) / static_cast<double>(total)));
+    }
+  }
+}
 
 Result<DepthFramePtr> Unpack(const RecordedDepth& recorded, std::optional<double> depth_scale) {
   Result<Image<std::uint16_t>> image = Decode(recorded.frame.image);

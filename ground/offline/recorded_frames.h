@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "common/base/status.h"
@@ -7,6 +8,12 @@
 #include "common/recording/recording.h"
 
 namespace isotherm {
+
+/// Hands on all items of a recording in order, and for each that cannot be read the error.
+/// `progress`, if there is one, gets the fraction done, 0..1.
+void ReadItems(RecordingReader& reader, const std::function<void(RecordedItem&)>& take,
+               const std::function<void(const Status&)>& fail,
+               const std::function<void(double)>& progress);
 
 /// Unpacks a recorded frame. `depth_scale` replaces the frame's own, `thermal_delay` is added to
 /// its capture time. Fails if the image cannot be decoded.

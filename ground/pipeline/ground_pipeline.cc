@@ -345,8 +345,8 @@ std::unique_ptr<ThermalPass> GroundPipeline::BeginThermalPass() {
     while (certainty != certainties_.end() && certainty->time < pose.time) ++certainty;
     // A frame that came to be believed only later has none.
     if (certainty == certainties_.end() || certainty->time != pose.time) continue;
-    poses.push_back(
-        {pose.time, pose.T_world_depth, certainty->surface_sigma_rad, certainty->mean_depth_m});
+    poses.push_back({pose.time, InFirstMap(pose.T_world_depth), certainty->surface_sigma_rad,
+                     certainty->mean_depth_m});
   }
   CHECK(atlas_.ForgetTemperatures());  // It had the room before.
   counts_.ForgetThermal();

@@ -18,6 +18,7 @@
 #include <thread>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "common/base/pause.h"
 #include "common/testing/temporary_directory.h"
@@ -283,25 +284,22 @@ class EdgeLoadTest : public ::testing::Test {
   std::uint64_t Due(Sensor sensor) const {
     const auto recording = RecordingReader::Open(file_);
     if (!recording) return 0;
-    std::optional<DeviceTicks> first;
-    DeviceTicks last{};
-    const auto note = [&first, &last](DeviceTicks ticks) {
-      if (!first) first = ticks;
-      last = ticks;
-    };
+    std::vector<DeviceTicks> ticks;
     while (true) {
       const Result<std::optional<RecordedItem>> item = (*recording)->Next();
       if (!item || !*item) break;
       const auto* depth = std::get_if<RecordedDepth>(&**item);
       const auto* thermal = std::get_if<RecordedThermal>(&**item);
-      if (depth != nullptr && sensor == Sensor::kDepth) note(depth->frame.header.device_ticks);
+      if (depth != nullptr && sensor == Sensor::kDepth)
+        ticks.push_back(depth->frame.header.device_ticks);
       if (thermal != nullptr && sensor == Sensor::kThermal)
-        note(thermal->frame.header.device_ticks);
+        ticks.push_back(thermal->frame.header.device_ticks);
     }
-    if (!first) return 0;
+    if (ticks.empty()) return 0;
     const std::chrono::microseconds period =
         sensor == Sensor::kDepth ? kDepthPeriod : std::chrono::microseconds(kThermalPeriod);
-    return static_cast<std::uint64_t>(std::lround(ToSeconds(last - *first) / ToSeconds(period))) +
+    return static_cast<std::uint64_t>(
+               std::lround(ToSeconds(ticks.back() - ticks.front()) / ToSeconds(period))) +
            1;
   }
 
