@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <systemd/sd-daemon.h>
 
 #include <cstdint>
@@ -53,6 +54,11 @@ std::optional<std::chrono::microseconds> WatchdogInterval() {
 }
 
 void IgnoreBrokenPipes() { CHECK(::signal(SIGPIPE, SIG_IGN) != SIG_ERR); }
+
+void UseSmallPages() {
+  // A kernel without huge pages has nothing to be asked for.
+  ::prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
+}
 
 StopSignal::StopSignal() : signals_(StopSignals()) {
   IgnoreBrokenPipes();

@@ -31,6 +31,11 @@ std::optional<std::chrono::microseconds> WatchdogInterval();
 /// process with SIGPIPE.
 void IgnoreBrokenPipes();
 
+/// From now on memory is taken in pages of 4 KB only, also by programs that this one starts. With
+/// transparent huge pages for all (the kernel's default on Debian) each of a small daemon's arenas
+/// holds 2 MB where it needs a few hundred KB.
+void UseSmallPages();
+
 /// Turns SIGTERM, SIGINT and SIGHUP (a terminal or ssh session that is gone; not under nohup) into
 /// a stop token, and ignores broken pipes. Create it in main before any other thread, so that all
 /// threads inherit the blocked signals. The first signal requests stop; later ones change nothing:

@@ -219,6 +219,7 @@ int Main(int argc, char** argv) {
 
   const SystemClock clock{};
   const TransportEnvironment environment(clock);
+  UseSmallPages();
   const StopSignal signal;
   return RunEdge(options, environment, clock, signal);
 }

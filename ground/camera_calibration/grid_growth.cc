@@ -34,7 +34,7 @@ int Nearest(const Points& points, const Eigen::Vector2d& p, double reach) {
 
 /// Steps to the nearest neighbour of a point and to the nearest in about another direction.
 std::optional<std::pair<Eigen::Vector2d, Eigen::Vector2d>> Steps(const Points& points, int from) {
-  const Eigen::Vector2d origin = points[static_cast<std::size_t>(from)];
+  const Eigen::Vector2d& origin = points[static_cast<std::size_t>(from)];
   Points arms;
   for (const Eigen::Vector2d& p : points)
     if (p != origin) arms.emplace_back(p - origin);

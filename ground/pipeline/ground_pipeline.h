@@ -110,6 +110,8 @@ class GroundPipeline {
     float surface_sigma_rad;
     float mean_depth_m;
   };
+  /// Does to no depth what is done to each depth image, so that the first is not slower.
+  void WarmUp();
   void MakeThermalStage();
 
   /// Holds the times of work that no stage counts itself.

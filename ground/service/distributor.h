@@ -50,7 +50,7 @@ class Distributor {
   void OnItem(SessionItem item);
   void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
   /// Takes a frame that came too late for the reconstruction: it is only recorded.
-  void OnLate(SessionItem item) { Record(std::move(item)); }
+  void OnLate(const SessionItem& item) { Record(item); }
   void OnSessionEnd(const SessionCounters& counters);
 
  private:

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "common/transport/endpoints.h"
 #include "common/transport/testing/test_domain.h"
 #include "tests/link/edge_side.h"
@@ -18,6 +20,13 @@ int Count(const std::string& text, std::string_view part) {
     ++count;
   }
   return count;
+}
+
+template <typename Condition>
+bool Await(Condition condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
+  while (!condition() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  return condition();
 }
 
 constexpr std::uint64_t kRepeats = 3;  // As in hostile_peer.
@@ -59,12 +68,12 @@ TEST(HostileTest, F60WhatCannotBeIsRefusedCountedAndLoggedOncePerCause) {
     system_test::Process peer({.program = HOSTILE_PEER,
                                .arguments = {std::to_string(domain.number())},
                                .environment = {}});
+    EXPECT_TRUE(peer.WaitForOutput("second session", kLinkPatience)) << peer.output();
+    EXPECT_TRUE(Await([&] { return subscriber->stats().counters.session == 2; }));
+    peer.Signal(SIGUSR1);
     EXPECT_TRUE(peer.WaitForOutput("sent", kLinkPatience)) << peer.output();
-    const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
-    while (subscriber->refusals().count(RefusalCause::kNotFinite) < 3 * kRepeats &&
-           std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::yield();
-    }
+    EXPECT_TRUE(Await(
+        [&] { return subscriber->refusals().count(RefusalCause::kNotFinite) >= 3 * kRepeats; }));
   }
   const std::string log = ::testing::internal::GetCapturedStderr();
 
@@ -152,12 +161,6 @@ class ImpostorTest : public ::testing::Test {
  protected:
   static constexpr std::uint64_t kFrames = 120;
 
-  template <typename Condition>
-  static bool Await(Condition condition) {
-    const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
-    while (!condition() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-    return condition();
-  }
   void SetUp() override {
     plan_.domain = domain_.number();
     plan_.depth_frames = plan_.thermal_frames = kFrames;

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "common/base/pause.h"
+#include "common/base/service.h"
 #include "common/testing/temporary_directory.h"
 #include "common/transport/participant.h"
 #include "edge/camera_process/camera_process.h"
@@ -371,6 +372,7 @@ class EdgeLoadTest : public ::testing::Test {
 };
 
 TEST_F(EdgeLoadTest, EachFrameIsAccountedForAndMemoryIsBounded) {
+  UseSmallPages();  // As isotherm-edge does.
   Process sink({FRAME_SINK, {std::to_string(TestDomain())}, {}, {}});
   ASSERT_TRUE(sink.WaitForOutput("listening", kPatience));
   ASSERT_NO_FATAL_FAILURE(StartPublishing());

@@ -1,11 +1,13 @@
-// Sends frames that cannot be, for tests/link: hostile_peer DOMAIN. Prints "sent" when all are
-// delivered and waits for a signal.
+// Sends frames that cannot be, for tests/link: hostile_peer DOMAIN. Prints "second session" when
+// that has begun and waits for SIGUSR1: that its samples were delivered does not say that they were
+// taken. Prints "sent" when all are delivered and waits for a signal.
 #include <dds/dds.h>
 #include <hostile_frames.h>
 #include <isotherm_frames.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -85,6 +87,19 @@ void Lend(std::vector<std::uint8_t>* payload, Sample* sample) {
       ._maximum = bytes, ._length = bytes, ._buffer = payload->data(), ._release = false};
 }
 
+void Say(const char* line) {
+  std::puts(line);
+  std::fflush(stdout);
+}
+
+void AwaitSignal() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGUSR1);
+  int caught = 0;
+  CHECK(sigwait(&signals, &caught) == 0);
+}
+
 void SendDepth(const RawWriter& rig, const RawWriter& writer) {
   using Sample = hostile_DepthFrame;
   using Payload = std::vector<std::uint8_t>;
@@ -114,10 +129,15 @@ void SendDepth(const RawWriter& rig, const RawWriter& writer) {
     sample.depth_scale = 1000.0;
     sample.added_later = 42;
     change(sample, payload);
-    if (sample.stamp.session > announced) Announce(rig, announced = sample.stamp.session);
+    const bool begins = sample.stamp.session > announced;
+    if (begins) Announce(rig, announced = sample.stamp.session);
     Lend(&payload, &sample);
     for (int i = 0; i < kRepeats; ++i) writer.Write(&sample);
     writer.Finish();
+    if (begins && announced > 1) {
+      Say("second session");
+      AwaitSignal();
+    }
   }
 }
 
@@ -144,6 +164,10 @@ void SendThermal(const RawWriter& writer) {
 
 int Main(int domain) {
   setenv("CYCLONEDDS_URI", kProfile, /*overwrite=*/1);
+  sigset_t awaited;
+  sigemptyset(&awaited);
+  sigaddset(&awaited, SIGUSR1);
+  CHECK(pthread_sigmask(SIG_BLOCK, &awaited, nullptr) == 0);
   const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const dds_entity_t participant =
@@ -159,8 +183,7 @@ int Main(int domain) {
   thermal.AwaitReader();
   SendDepth(rig, depth);
   SendThermal(thermal);
-  std::puts("sent");
-  std::fflush(stdout);
+  Say("sent");
   pause();  // Until a signal ends it: a peer that has left cannot be asked who it was.
   return 0;
 }
