@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/base/standard_error.h"
@@ -59,7 +60,8 @@ std::string ProgressBar::Line(double fraction, bool finished) const {
   std::string line = fmt::format("{}  [{}{}] {:3.0f} %", title_, std::string(filled, '#'),
                                  std::string(kWidth - filled, '.'), fraction * 100.0);
   if (total_ > 0) {
-    const auto done = static_cast<std::uint64_t>(fraction * static_cast<double>(total_) + 0.5);
+    const auto done =
+        static_cast<std::uint64_t>(std::llround(fraction * static_cast<double>(total_)));
     line += fmt::format("  {}/{} {}", done, total_, unit_);
   }
   const double elapsed_s = ElapsedSeconds();

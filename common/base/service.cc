@@ -69,7 +69,7 @@ StopSignal::StopSignal() : signals_(StopSignals()) {
 StopSignal::~StopSignal() {
   waiter_.request_stop();
   // Wakes sigwait. The signal is sent to that thread alone, where it is blocked.
-  pthread_kill(waiter_.native_handle(), SIGTERM);
+  pthread_kill(waiter_.native_handle(), SIGINT);
   waiter_.join();
   // Signals of its lifetime that nobody took are not for whoever comes next.
   const timespec now{};

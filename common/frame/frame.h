@@ -125,8 +125,8 @@ enum class Encoding : std::uint8_t {
   /// As kRaw16, of a camera that measures no temperatures: its counts. A value of its own, so that
   /// nobody takes counts for centi-kelvin; programs that do not know it refuse the frame.
   kCounts16 = 4,
-  /// As kThermalRans and kRaw16, of temperatures in another scale than centi-kelvin, which is the
-  /// frame's. Values of their own for the same reason.
+  /// Packed as kThermalRans and kRaw16, in the frame's own scale instead of centi-kelvin. They have
+  /// values of their own for the same reason.
   kScaledThermalRans = 5,
   kScaledRaw16 = 6,
 };

@@ -106,7 +106,7 @@ enum class NucPolicy : std::uint8_t {
   kCamera = 2,     ///< The camera decides by itself.
 };
 std::string_view ToString(NucPolicy policy);
-/// In the operator's words, as the next.
+/// Returns the state, or where a correction came from, in the operator's words.
 std::string_view ToString(NucState state);
 std::string_view ToString(NucSource source);
 
@@ -184,7 +184,7 @@ struct ClockReport {
   friend bool operator==(const ClockReport&, const ClockReport&) = default;
 };
 
-/// Without steps, of which the kernel does not tell.
+/// Converts what the kernel tells; it tells of no steps, so there are none.
 ClockReport ToReport(const KernelClock& clock);
 /// "synchronised, off by about 0.12 ms, at most 1.2 ms, set 2 times by +3.020 s in all".
 std::string ToText(const ClockReport& clock);

@@ -17,7 +17,7 @@ struct RenamedOption {
 
   std::string_view type;    ///< The message that it was in, without the package.
   std::string_view before;  ///< Its name there, which is reserved now.
-  std::string_view now;     ///< Dotted, from that message or from the rig file's on.
+  std::string_view now;  ///< Its name now, dotted, seen from that message (or from the rig file).
   Place place = Place::kOptions;
 };
 

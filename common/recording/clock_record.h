@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// Name of the metadata in a recording that say how good the wall clock was that stamped its
+/// Name of the metadata in a recording that tells how good the wall clock was that stamped its
 /// frames.
 inline constexpr std::string_view kClockMetadata = "clock";
 

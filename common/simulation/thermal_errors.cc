@@ -132,10 +132,11 @@ double FlickerKelvin(double sigma_kelvin, double memory_s, double time_s, std::u
   // Between independent values, so that the variance stays the same on the way.
   const double position = std::max(0.0, time_s / memory_s);
   const double before = std::floor(position);
-  const double turn = 0.5 * std::numbers::pi * (position - before);
+  const double angle_rad = 0.5 * std::numbers::pi * (position - before);
   const auto counter = static_cast<std::uint64_t>(before);
-  return sigma_kelvin * (std::cos(turn) * static_cast<double>(NormalNoise(stream, counter)) +
-                         std::sin(turn) * static_cast<double>(NormalNoise(stream, counter + 1)));
+  return sigma_kelvin *
+         (std::cos(angle_rad) * static_cast<double>(NormalNoise(stream, counter)) +
+          std::sin(angle_rad) * static_cast<double>(NormalNoise(stream, counter + 1)));
 }
 
 }  // namespace isotherm

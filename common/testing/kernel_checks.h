@@ -60,7 +60,7 @@ inline constexpr double kSinglePrecision = 1e-6;
 /// A decision falls one way, the other, or is so near its threshold that rounding decides.
 enum class Tribool { kNo, kYes, kEither };
 
-/// value >= 0; `slack` is the rounding of `value` in single precision. NaN is no.
+/// Tells whether value >= 0; `slack` is its rounding in single precision. NaN is no.
 inline Tribool AtLeastZero(double value, double slack) {
   if (!(value >= -slack)) return Tribool::kNo;
   return value > slack || slack == 0.0 ? Tribool::kYes : Tribool::kEither;

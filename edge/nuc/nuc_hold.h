@@ -25,7 +25,7 @@ class NucHold {
   void OnCorrected() { is_used_up_ = false; }
 
   bool is_held() const { return until_.has_value(); }
-  /// While it is held.
+  /// Returns how much of the hold is left; only while it is held.
   Nanoseconds left(CaptureTime now) const { return *until_ - now; }
 
  private:

@@ -67,10 +67,10 @@ inline constexpr std::uint16_t kP2ProGain = 5;          ///< Parameter: 1 high, 
 /// frame. Thread-compatible.
 class PolledShutter {
  public:
-  /// A correction was ordered.
+  /// Notes that a correction was ordered.
   void NoteOrder(SteadyTime now) { ordered_at_ = now; }
   void NoteState(bool closed, SteadyTime now);
-  /// The camera does not answer any more.
+  /// Forgets the shutter's state: to be called when the camera does not answer any more.
   void ForgetState() { closed_.reset(); }
 
   /// Nullopt if nothing is known.

@@ -15,6 +15,8 @@ constexpr int kBlur = 2, kScale = 3, kWall = 4, kShape = 5, kUnknowns = kShape +
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
+/// Less blur than a pixel's own area makes cannot be told from none; with more the holes of a board
+/// run into each other.
 constexpr double kMinBlur_px = 0.15, kMaxBlur_px = 5.0;
 
 struct WindowBox {
@@ -196,6 +198,8 @@ class BlobSolver {
 
   std::optional<BlobFit> Solve() {
     if (!Begin()) return std::nullopt;
+    // The bound is for fits that would never settle. 2e-4 px is a fiftieth of what an ideal image
+    // of a hole tells (kFloor_px of feature_measurement.cc).
     constexpr int kMaxIterations = 25;
     constexpr double kConverged_px = 2e-4;
     for (int i = 0; i < kMaxIterations; ++i) {
@@ -278,6 +282,8 @@ class BlobSolver {
       normal_(unknown, unknown) += weight * unit;
       gradient(unknown) += weight * unit * (at - unknowns_(unknown));
     };
+    // Weights beside those of pixels, which are about 1. Weak: what a small image cannot tell stays
+    // where it began, and what it can tell is hardly pulled. Not tuned.
     constexpr double kFixed = 1e9, kWeak = 0.05;
     keep(kBlur, kWeak, model_.blur_px);
     keep(kScale, model_.known_scale ? kFixed : kWeak, model_.known_scale.value_or(model_.scale));
@@ -304,7 +310,8 @@ class BlobSolver {
     return fit;
   }
 
-  static constexpr double kRobust = 3.0;  ///< Standard deviations.
+  /// Standard deviations beyond which a pixel counts less: the usual three.
+  static constexpr double kRobust = 3.0;
   const BlobModel& model_;
   const WindowBox box_;
   std::vector<Sample> samples_;

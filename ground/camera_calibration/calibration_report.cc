@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "ground/camera_calibration/coverage.h"
 #include "ground/camera_calibration/transfer.h"
+#include "ground/camera_calibration/view_coverage.h"
 
 namespace isotherm {
 namespace {

@@ -10,6 +10,7 @@ namespace {
 
 /// Centres of images of holes are that uncertain, all in all.
 constexpr double kFeatureSigma_px = 0.02;
+/// Three views tell a lens at all (Zhang 2000), six how certain it is, roughly.
 constexpr std::size_t kMinForLens = 3, kMinForUncertainty = 6;
 
 /// The lens that a camera is taken to have before anything is known.

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/base/status.h"
-#include "ground/camera_calibration/coverage.h"
 #include "ground/camera_calibration/starting_values.h"
 #include "ground/camera_calibration/target_calibration.h"
+#include "ground/camera_calibration/view_coverage.h"
 
 namespace isotherm {
 

@@ -14,6 +14,7 @@ using Pattern = CalibrationTarget::Pattern;
 
 /// An image of a hole tells its place no better, pixels: lenses are not ideal, nor are holes.
 constexpr double kFloor_px = 0.01;
+/// Corners of a chessboard, refined by OpenCV. Not measured.
 constexpr double kCornerSigma_px = 0.05;
 
 double NeighbourDistance(const CalibrationTarget& target) {
@@ -28,9 +29,9 @@ std::vector<Eigen::Vector2d> Rim(const CalibrationTarget& target, double size_m)
   if (target.pattern == Pattern::kSquareHoles) {
     constexpr int kPerSide = kPoints / 4;
     for (int side = 0; side < 4; ++side) {
-      const Eigen::Rotation2Dd turn(0.5 * std::numbers::pi * side);
+      const Eigen::Rotation2Dd rotation(0.5 * std::numbers::pi * side);
       for (int i = 0; i < kPerSide; ++i)
-        rim.emplace_back(turn *
+        rim.emplace_back(rotation *
                          Eigen::Vector2d(0.5 * size_m, size_m * (i / double{kPerSide} - 0.5)));
     }
     return rim;
@@ -123,6 +124,7 @@ std::vector<FeatureMeasurement> MeasureCorners(const Image<float>& image,
     if (i % static_cast<std::size_t>(target.columns) != 0)
       spacing = std::min(spacing, (near_px[i] - near_px[i - 1]).norm());
   }
+  // Of the spacing: a window that does not reach the next corner.
   constexpr double kOwn = 0.35;
   const int half = std::clamp(static_cast<int>(kOwn * spacing), 2, 12);
   cv::cornerSubPix(values, corners, {half, half}, {-1, -1},

@@ -40,6 +40,7 @@ std::optional<std::pair<Eigen::Vector2d, Eigen::Vector2d>> Steps(const Points& p
     if (p != origin) arms.emplace_back(p - origin);
   std::sort(arms.begin(), arms.end(),
             [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+  // The eight around a point of a grid; one of them leads along the other direction.
   constexpr std::size_t kNeighbours = 8;
   constexpr double kMinSine = 0.5, kMaxRatio = 2.2;  // A board seen at up to 60 degrees.
   for (std::size_t i = 1; i < std::min(kNeighbours, arms.size()); ++i) {
@@ -61,7 +62,9 @@ Lattice Grow(const Points& points, int from, const Eigen::Vector2d& right,
   Lattice lattice = {{{0, 0}, from}};
   std::set<int> used = {from};
   std::deque<Front> fronts = {{{0, 0}, right, down}};
-  constexpr double kReach = 0.3;  // Of a step.
+  // Of a step. Below a half, so that no two cells claim one point; more than perspective and lens
+  // change a step from one cell to the next.
+  constexpr double kReach = 0.3;
   while (!fronts.empty()) {
     const Front front = fronts.front();
     fronts.pop_front();
@@ -161,7 +164,7 @@ Lattice Complete(const Lattice& lattice, const Points& points, bool asymmetric) 
 }
 
 /// One of the eight ways to lay a grid on itself.
-Lattice Turn(const Lattice& lattice, int way) {
+Lattice Reorient(const Lattice& lattice, int way) {
   const Cell extent = Extent(lattice);
   Lattice turned;
   for (const auto& [cell, point] : lattice) {
@@ -225,7 +228,7 @@ bool IsClockwise(const Points& features, const CalibrationTarget& target) {
 void Number(const Lattice& lattice, const Points& points, const CalibrationTarget& target,
             GrownGrid& grid) {
   for (int way = 0; way < 8; ++way) {
-    Points features = Read(Turn(lattice, way), points, target);
+    Points features = Read(Reorient(lattice, way), points, target);
     if (features.empty()) continue;
     if (IsClockwise(features, target)) {
       grid.features = std::move(features);
@@ -249,6 +252,7 @@ std::optional<GrownGrid> GrowGrid(const std::vector<Eigen::Vector2d>& points,
     return (points[static_cast<std::size_t>(a)] - middle).squaredNorm() <
            (points[static_cast<std::size_t>(b)] - middle).squaredNorm();
   });
+  // Points near the middle to begin at: a start beside a stray or a missing point fails. Not tuned.
   constexpr std::size_t kTries = 12;
   Lattice best;
   for (std::size_t i = 0; i < std::min(kTries, order.size()); ++i) {
@@ -258,6 +262,7 @@ std::optional<GrownGrid> GrowGrid(const std::vector<Eigen::Vector2d>& points,
     if (lattice.size() > best.size()) best = std::move(lattice);
     if (best.size() == points.size()) break;
   }
+  // 3 by 3: the least that shows which way rows and columns run. Smaller: clutter passes.
   constexpr std::size_t kMinPoints = 9;
   if (best.size() < kMinPoints) return std::nullopt;
   const bool asymmetric = target.pattern == CalibrationTarget::Pattern::kAsymmetricCircles;

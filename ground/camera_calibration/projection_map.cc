@@ -71,9 +71,9 @@ ProjectionMap ProjectionSigmas(const BundleCamera& camera, const Eigen::MatrixXd
   for (int i = 0; i < kPoints; ++i) {
     const auto& ray = rays[static_cast<std::size_t>(i)];
     if (!ray || !IsInner(map.PixelOf(i), size_px)) continue;
-    const auto turn = ProjectionByRotation(camera.kind, camera.lens, *ray);
-    normal += turn.transpose() * turn;
-    cross += turn.transpose() * ProjectionByLens(camera.kind, camera.lens, *ray);
+    const auto by_rotation = ProjectionByRotation(camera.kind, camera.lens, *ray);
+    normal += by_rotation.transpose() * by_rotation;
+    cross += by_rotation.transpose() * ProjectionByLens(camera.kind, camera.lens, *ray);
   }
   const Eigen::Matrix3Xd taken_up = normal.ldlt().solve(cross);
   for (int i = 0; i < kPoints; ++i) {

@@ -18,6 +18,7 @@ namespace {
 
 /// Fewer cannot tell a lens from the board's shape.
 constexpr std::size_t kMinViews = 6;
+/// Views that all face the same way do not tell focal length from distance.
 constexpr double kMinSpread_deg = 10.0;
 
 Status CheckSizes(const CalibrationInput& input) {

@@ -68,6 +68,7 @@ void StillPoseFinder::Take(double time_s, const Image<float>& image) {
   }
   pose_.end_s = time_s;
   if (pose_.frames >= options_.max_frames) return;
+  // Eight of max_frames: enough for the scatter of one, cheap enough to measure each.
   constexpr int kEvery = 5;
   if (pose_.frames % kEvery == 0) pose_.samples.push_back(image);
   ++pose_.frames;

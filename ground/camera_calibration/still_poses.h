@@ -15,8 +15,8 @@ struct StillPoseOptions {
   int max_frames = 40;
 };
 
-/// The target held still: the mean of the frames meanwhile, and some of them as they were, which
-/// show how much what is measured in one frame scatters.
+/// Holds what was seen while the target stood still: the mean image, and single frames, which show
+/// how much a measurement in one of them scatters.
 struct StillPose {
   double begin_s = 0.0, end_s = 0.0;
   int frames = 0;

@@ -14,6 +14,7 @@
 namespace isotherm {
 namespace {
 
+/// The bound is for what would never settle.
 constexpr int kMaxRounds = 8;
 /// A round that moves no feature's prediction by more than this ends them.
 constexpr double kSettled_px = 1e-3;
@@ -142,6 +143,8 @@ class Calibrator {
     }
     std::vector<double> all;
     for (const auto& [key, value] : sums) all.push_back(std::sqrt(value.first / value.second));
+    // A view this much worse than the others moved, or was taken for another part of the target.
+    // Smaller: sound views of a poor camera are refused; larger: one wrong view bends the lens.
     constexpr double kTimesMedian = 4.0, kMin_px = 0.15;
     const double limit = std::max(kMin_px, kTimesMedian * MedianOf(all));
     bool refused = false;

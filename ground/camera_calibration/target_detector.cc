@@ -86,6 +86,7 @@ HoleSearch FindHoles(const Image<float>& image, const CalibrationTarget& target,
   const int symmetry = target.pattern == Pattern::kAsymmetricCircles ? cv::CALIB_CB_ASYMMETRIC_GRID
                                                                      : cv::CALIB_CB_SYMMETRIC_GRID;
   // Small images are enlarged: the detector counts whole pixels.
+  // Squares of a board in a thermal image are few pixels wide; OpenCV's finder needs some ten.
   constexpr int kSmallWidth = 500;
   const int zoom = image.width() <= kSmallWidth ? 2 : 1;
   const cv::Size size(target.columns, target.rows);
@@ -207,6 +208,7 @@ Status CheckSaturation(const Image<float>& image, const std::vector<Eigen::Vecto
   if (values.empty()) return OkStatus();
   const float largest = *std::max_element(values.begin(), values.end());
   const auto at_largest = std::count(values.begin(), values.end(), largest);
+  // A sound image has few pixels at its largest value; where a fifth has it, the range cut it off.
   constexpr double kMaxPart = 0.2;
   if (static_cast<double>(at_largest) <= kMaxPart * static_cast<double>(values.size()))
     return OkStatus();
@@ -220,6 +222,7 @@ Status CheckSaturation(const Image<float>& image, const std::vector<Eigen::Vecto
 Status CheckValues(const Image<float>& image) {
   std::size_t bad = 0;
   for (const float value : image.pixels()) bad += std::isfinite(value) ? 0 : 1;
+  // Half an image may still show a target; less is a wrong range rather than a few dead pixels.
   constexpr double kMaxBad = 0.5;
   if (static_cast<double>(bad) > kMaxBad * static_cast<double>(image.size())) {
     return FailedPrecondition(fmt::format(
@@ -234,6 +237,7 @@ Status NotFoundBecause(const CalibrationTarget& target, const std::optional<Grow
     return FailedPrecondition(
         "the image is mirrored: turn the mirroring of the camera or its driver off");
   }
+  // Fewer points in rows and columns are met by chance.
   constexpr int kManyPoints = 12;
   if (other && other->IsDense() && other->points >= kManyPoints &&
       (other->columns != target.columns || other->rows != target.rows)) {

@@ -89,9 +89,9 @@ TEST_F(AlignRigidTest, FewerThanThreePointsMatchAsFarAsTheyCan) {
   EXPECT_TRUE(IsRigid(shift));
   EXPECT_NEAR((shift * one[0] - there[0]).norm(), 0.0, kExact);
   const Points two{{0, 0, 0}, {1, 0, 0}};
-  const RigidTransform turn = AlignRigid(two, Moved(SomeMotion(), two));
-  EXPECT_TRUE(IsRigid(turn));
-  EXPECT_NEAR(SumOfSquares(turn, two, Moved(SomeMotion(), two)), 0.0, kExact);
+  const RigidTransform rotation = AlignRigid(two, Moved(SomeMotion(), two));
+  EXPECT_TRUE(IsRigid(rotation));
+  EXPECT_NEAR(SumOfSquares(rotation, two, Moved(SomeMotion(), two)), 0.0, kExact);
 }
 
 }  // namespace

@@ -74,9 +74,9 @@ void HandMotion::Advance(double step_s, const RigidTransform& T_world_goal, doub
                          double rotation_rate_rad_s) {
   velocity_m_s_ = Steer(velocity_m_s_, T_world_goal.translation() - T_world_depth_.translation(),
                         speed_m_s, traits_.acceleration_m_s2, step_s);
-  const Eigen::AngleAxisd turn(T_world_goal.linear() * T_world_depth_.linear().transpose());
+  const Eigen::AngleAxisd to_goal(T_world_goal.linear() * T_world_depth_.linear().transpose());
   rotation_rate_rad_s_ =
-      Steer(rotation_rate_rad_s_, turn.angle() * turn.axis(), rotation_rate_rad_s,
+      Steer(rotation_rate_rad_s_, to_goal.angle() * to_goal.axis(), rotation_rate_rad_s,
             traits_.angular_acceleration_deg_s2 * kRadPerDeg, step_s);
   T_world_depth_.translation() += step_s * velocity_m_s_;
   const double angle = step_s * rotation_rate_rad_s_.norm();
@@ -87,15 +87,15 @@ void HandMotion::Advance(double step_s, const RigidTransform& T_world_goal, doub
 }
 
 ScriptedOperator::ScriptedOperator(const OperatorTraits& traits, const Obedience& obedience,
-                                   const RigidTransform& first_T_world_depth,
-                                   std::vector<Waypoint> path, std::uint64_t seed)
+                                   const RigidTransform& T_world_depth, std::vector<Waypoint> path,
+                                   std::uint64_t seed)
     : traits_(traits),
       obedience_(obedience),
       path_(std::move(path)),
       seed_(seed),
-      hand_(traits, first_T_world_depth),
+      hand_(traits, T_world_depth),
       current_{.due_s = 0.0,
-               .T_world_goal = first_T_world_depth,
+               .T_world_goal = T_world_depth,
                .has_goal = false,
                .is_urgent = false,
                .hold_still = false,

@@ -64,7 +64,7 @@ struct Obedience {
 class ScriptedOperator {
  public:
   ScriptedOperator(const OperatorTraits& traits, const Obedience& obedience,
-                   const RigidTransform& first_T_world_depth, std::vector<Waypoint> path,
+                   const RigidTransform& T_world_depth, std::vector<Waypoint> path,
                    std::uint64_t seed);
 
   /// Takes a message about a view that was taken from `T_world_depth`, now; it has its effect after

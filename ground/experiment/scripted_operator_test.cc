@@ -29,8 +29,8 @@ class MotionMeter {
   void Add(const RigidTransform& pose) {
     if (before_) {
       const Eigen::Vector3d v = (pose.translation() - before_->translation()) / kStep_s;
-      const Eigen::AngleAxisd turn(pose.linear() * before_->linear().transpose());
-      const Eigen::Vector3d w = turn.angle() * turn.axis() / kRadPerDeg / kStep_s;
+      const Eigen::AngleAxisd rotation(pose.linear() * before_->linear().transpose());
+      const Eigen::Vector3d w = rotation.angle() * rotation.axis() / kRadPerDeg / kStep_s;
       const auto raise = [](double& extreme, double value) { extreme = std::max(extreme, value); };
       raise(extremes_.speed_m_s, v.norm());
       raise(extremes_.rotation_rate_deg_s, w.norm());

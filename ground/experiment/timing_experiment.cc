@@ -54,8 +54,9 @@ double OffsetOfPoint(PoseAt pose, double right_s, double wrong_s, double pose_er
 /// On an arc around the object, halfway between two frames: how far linear interpolation is off.
 double ArcOffset(double radius_m, double speed_m_s) {
   const auto pose = [&](double angle_rad) {
-    const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitY());
-    return MakeTransform(turn * Eigen::Vector3d(0.0, 0.0, -radius_m), Eigen::Quaterniond(turn));
+    const Eigen::AngleAxisd rotation(angle_rad, Eigen::Vector3d::UnitY());
+    return MakeTransform(rotation * Eigen::Vector3d(0.0, 0.0, -radius_m),
+                         Eigen::Quaterniond(rotation));
   };
   const double angle_rad = 2.0 * std::asin(0.5 * speed_m_s * kFrame_s / radius_m);
   return TranslationDistance(Interpolate(pose(0.0), pose(angle_rad), 0.5), pose(0.5 * angle_rad));

@@ -58,7 +58,7 @@ constexpr int kRoundsBetweenRetries = 3;
 
 /// Views that are remembered while another one is proposed; the worst goes when one more comes.
 /// More: older values, as the model changes. Not tuned.
-constexpr std::size_t kMaxRemembered = 64;
+constexpr std::size_t kMaxKept = 64;
 
 /// Targets are looked at from this much more than the nearest depth that the depth camera measures,
 /// since a hand sways and a surface is not flat. Smaller: parts of it have no return; larger: the
@@ -231,14 +231,14 @@ bool ViewPlanner::HasWay(const RigidTransform& T_map_view, const Model& model) {
   return outlook.is_possible && outlook.firmness >= kFirm;
 }
 
-void ViewPlanner::Remember(const NextView& view, const RigidTransform& T_map_depth) {
+void ViewPlanner::KeepForLater(const NextView& view, const RigidTransform& T_map_depth) {
   // Of views that are alike one is enough.
-  std::erase_if(remembered_,
+  std::erase_if(kept_,
                 [&](const NextView& other) { return IsNear(other.T_map_depth, view.T_map_depth); });
-  remembered_.push_back(view);
-  if (remembered_.size() <= kMaxRemembered) return;
-  remembered_.erase(std::ranges::min_element(
-      remembered_, {}, [&](const NextView& other) { return Worth(other, T_map_depth); }));
+  kept_.push_back(view);
+  if (kept_.size() <= kMaxKept) return;
+  kept_.erase(std::ranges::min_element(
+      kept_, {}, [&](const NextView& other) { return Worth(other, T_map_depth); }));
 }
 
 void ViewPlanner::Offer(NextView view, const Model& model) {
@@ -250,10 +250,10 @@ void ViewPlanner::Offer(NextView view, const Model& model) {
   // a way the view is worth less, and may not be better any more.
   if (is_better() && !HasWay(view.T_map_depth, model)) view.firmness = 0.0;
   if (!is_better() || (is_firm_here_ && view.firmness < kFirm)) {
-    Remember(view, here);
+    KeepForLater(view, here);
     return;
   }
-  if (best_) Remember(*best_, here);
+  if (best_) KeepForLater(*best_, here);
   best_ = view;
   steps_at_best_ = steps_proposed_ = 0;
 }
@@ -268,14 +268,14 @@ void ViewPlanner::TryBestAgain(const Model& model) {
   if (is_firm_here_) best_.reset();
 }
 
-bool ViewPlanner::TryRemembered(const Model& model) {
+bool ViewPlanner::TryKept(const Model& model) {
   const auto most = std::ranges::max_element(
-      remembered_, {}, [&](const NextView& view) { return Worth(view, model.T_map_depth); });
-  if (most == remembered_.end()) return false;
+      kept_, {}, [&](const NextView& view) { return Worth(view, model.T_map_depth); });
+  if (most == kept_.end()) return false;
   const NextView view = *most;
   if (best_ && Worth(view, model.T_map_depth) < kClearlyBetter * Worth(*best_, model.T_map_depth))
     return false;
-  remembered_.erase(most);
+  kept_.erase(most);
   if (IsExhausted(view.T_map_depth)) return true;
   const std::optional<NextView> again = Try(view.T_map_depth, model);
   if (again) Offer(*again, model);
@@ -315,7 +315,7 @@ void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
     --left;
   }
   // At least one new candidate is tried in each step.
-  for (; left > 1 && TryRemembered(model); --left) {
+  for (; left > 1 && TryKept(model); --left) {
   }
   if (candidates_.empty()) MakeCandidates(coverage, T_map_depth);
   TryNewCandidates(left, model);

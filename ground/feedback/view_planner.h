@@ -94,11 +94,11 @@ class ViewPlanner {
   void TryBestAgain(const Model& model);
   /// Tries the view again that was worth most when it was remembered. Returns false if there is
   /// none that would be the best.
-  bool TryRemembered(const Model& model);
+  bool TryKept(const Model& model);
   void TryNewCandidates(int count, const Model& model);
   /// Makes it the best view, or remembers it.
   void Offer(NextView view, const Model& model);
-  void Remember(const NextView& view, const RigidTransform& T_map_depth);
+  void KeepForLater(const NextView& view, const RigidTransform& T_map_depth);
   /// Returns whether the rig can be tracked on the straight way there.
   bool HasWay(const RigidTransform& T_map_view, const Model& model);
 
@@ -108,10 +108,10 @@ class ViewPlanner {
   std::deque<Candidate> candidates_;
   Reach reach_;
   std::optional<NextView> best_;
-  std::vector<NextView> remembered_;
+  std::vector<NextView> kept_;
   std::optional<RigidTransform> T_map_depth_before_;
-  double unseen_m2_ = 0.0;           ///< See Unseen(): the largest in the last round of candidates.
-  double unseen_in_round_m2_ = 0.0;  ///< The largest so far in this round.
+  double unseen_m2_ = 0.0;           ///< What Unseen() found in the last complete round, at most.
+  double unseen_in_round_m2_ = 0.0;  ///< The same, so far in this round.
   bool is_firm_here_ = false;        ///< The rig is tracked firmly where it is.
   int rounds_ = 0;                   ///< Rounds of candidates begun.
   int steps_at_best_ = 0;            ///< Steps that the rig has been at the best view.

@@ -16,6 +16,7 @@ constexpr std::size_t kMaxSamples = 4096;  ///< Four seconds at 1 kHz.
 /// Senders round; what is further off is not a rotation.
 constexpr double kUnitTolerance = 0.01;
 /// Jitter that two neighbouring poses may show on top of the greatest speed, in sigmas.
+/// Smaller: sound poses are refused, one in 370 at 3; larger: a jump passes for jitter.
 constexpr double kJitterSigmas = 4.0;
 /// A rig in somebody's hands may accelerate so much while its motion is carried on from the newest
 /// sample.

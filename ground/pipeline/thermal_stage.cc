@@ -55,9 +55,9 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
     return false;
   }
   waiting_.push_back({std::move(frame), nuc});
-  // A depth stream that stopped must not make the buffer grow.
-  // Frames wait for the depth frame behind them, a handful at 30 and 40 Hz. 64 are one and a half
-  // seconds: longer gaps are left out anyway (max_depth_gap_s).
+  // Frames wait for the depth frame behind them, a handful at 30 and 40 Hz. The bound keeps the
+  // buffer from growing when the depth stream stops: 64 are one and a half seconds, and longer gaps
+  // are left out anyway (max_depth_gap_s).
   constexpr std::size_t kMaxWaiting = 64;
   if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();

@@ -13,7 +13,7 @@ namespace {
 /// Only the reserve on the disk depends on it (RecordingLoop keeps half as much again).
 constexpr std::uint64_t kResultBytesPerBlock = 6'000;
 /// Images, trajectory, statistics.
-constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;
+constexpr std::uint64_t kMinResultBytes = 4U << 20;
 
 }  // namespace
 
@@ -86,7 +86,7 @@ void ReconstructionLoop::EstimateResults() {
   // The results of ended scans need their room until they are written.
   if (board_.scans_being_written == 0) ended_result_bytes_ = 0;
   const auto blocks = static_cast<std::uint64_t>(scan_->model().tsdf().block_count());
-  result_bytes_ = kResultBytesAtLeast + kResultBytesPerBlock * blocks;
+  result_bytes_ = kMinResultBytes + kResultBytesPerBlock * blocks;
   board_.result_bytes = ended_result_bytes_ + result_bytes_;
 }
 

@@ -36,7 +36,7 @@ class RecordingLoop {
         progress_(progress),
         look_at_space_(std::move(look_at_space)) {}
 
-  /// Until stop is requested and the queue is empty.
+  /// Records until stop is requested and the queue is empty.
   void Run(RecordingQueue& queue, const std::stop_token& stop);
   /// Returns the newest failure of all sessions. Not while it runs.
   const Status& status() const { return status_; }

@@ -34,7 +34,7 @@ std::uint64_t Dropped(const StreamStatus& stream) {
 }
 
 constexpr double kBytesPerGb = 1e9;
-/// A hand that follows advice of so long ago has moved on.
+/// A hand that follows advice of so long ago has moved on. Not tuned.
 constexpr double kOldFeedback_s = 1.0;
 /// The rig keeps this in reserve at most: there its recording ends (spool.expert.reserve_mb).
 constexpr double kRigDiskEnds_gb = 1.0;

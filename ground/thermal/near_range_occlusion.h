@@ -32,8 +32,8 @@ class NearRangeOcclusion {
   void Update(const Image<float>& depth_m, const SurfaceMaps& model,
               const CameraModel& model_camera);
 
-  /// Where the thermal camera was when the frame to be assessed was captured, seen from the depth
-  /// camera of the last Update.
+  /// Sets the pose of the thermal camera when the frame to be assessed was captured, in the depth
+  /// camera's frame of the last Update.
   void Aim(const RigidTransform& T_depth_thermal);
 
   /// Makes pixels of row `y` that are left out unassignable. Returns how many were assignable.

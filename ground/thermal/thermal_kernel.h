@@ -28,10 +28,10 @@ struct ThermalPixel {
   float depth_m;        ///< Depth of the model's surface along the thermal camera's z; 0 = none.
   float celsius;        ///< At the pixel's centre.
   std::int32_t slopes;  ///< d celsius / dv above d celsius / du, signed, in 1 / kSlopeScale K/px.
-  std::int32_t flags;   ///< The classes where ThermalLayout has them, kSeen and kAssignable in
-                        ///< place of disagreement, and from kCosineShift on, in place of the
-                        ///< temperature, the cosine of the emission angle in 1 / kCosineScale, and
-                        ///< from kSigmaShift on the SigmaCode of an assignable temperature.
+  std::int32_t flags;   ///< A ThermalVoxel's word but for three fields: kSeen and kAssignable take
+                        ///< the place of the disagreement; the cosine of the emission angle, in
+                        ///< 1 / kCosineScale from kCosineShift on, that of the temperature; and
+                        ///< from kSigmaShift on stands the SigmaCode of an assignable one.
 
   static constexpr std::uint8_t Cosine(std::int32_t flags) {
     return static_cast<std::uint8_t>(flags >> kCosineShift & 0xFF);

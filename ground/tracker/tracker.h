@@ -66,7 +66,8 @@ class Tracker {
   void UseThermal(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth) {
     rig_.UseThermal(thermal_camera, T_thermal_depth);
   }
-  /// The active sub-map has a surface already, and the rig is anywhere near its known views.
+  /// Begins as lost, in an active sub-map that has a surface already: the rig is anywhere near its
+  /// known views.
   void BeginLost() { rig_.BeginLost(); }
 
   /// A valid thermal frame of the camera's size, before the first depth frame after it.
@@ -99,7 +100,7 @@ class Tracker {
   const PoseUncertainty& uncertainty() const { return rig_.uncertainty(); }
   const OdometryPrior& external_odometry() const { return rig_.external_odometry(); }
   const Trajectory& trajectory() const { return trajectory_; }
-  /// Times that the rig was found again.
+  /// Returns how often the rig was found again.
   std::uint64_t relocalisations() const { return rig_.relocalisations(); }
   const TrackerTimes& times() const { return times_; }
 

@@ -32,9 +32,9 @@ class TrajectoryTest : public ::testing::Test {
   /// Says where the second sub-map is: turned by 90 degrees about z (its x is y in `world`), and
   /// moved.
   void Join(const Eigen::Vector3d& p_world) {
-    const Eigen::AngleAxisd turn(std::numbers::pi / 2.0, Eigen::Vector3d::UnitZ());
+    const Eigen::AngleAxisd rotation(std::numbers::pi / 2.0, Eigen::Vector3d::UnitZ());
     atlas_.map(1).joined = true;
-    atlas_.map(1).T_world_map = MakeTransform(p_world, Eigen::Quaterniond(turn));
+    atlas_.map(1).T_world_map = MakeTransform(p_world, Eigen::Quaterniond(rotation));
   }
   void ExpectPose(std::size_t i, double time_s, const Eigen::Vector3d& p_world, double sigma_m) {
     ASSERT_LT(i, trajectory_.poses().size());

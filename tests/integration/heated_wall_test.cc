@@ -1,4 +1,4 @@
-// Temperatures as a second cue, on simulated heated walls with truth: what they add where the
+// Thermal alignment on simulated heated walls with truth: what they add where the
 // geometry leaves directions free, and that they add nothing where they say nothing.
 #include <gtest/gtest.h>
 

@@ -26,7 +26,7 @@ class ViewCoverage {
   double MinDistance() const { return min_distance_m_; }
   double MaxDistance() const { return max_distance_m_; }
   /// The fraction of the half diagonal that the farthest feature reached.
-  double Reach() const { return reach_; }
+  double reach_fraction() const { return reach_fraction_; }
 
   /// Returns what is missing, a phrase each, the most important first: "no views with the target in
   /// the upper left corner".
@@ -39,7 +39,7 @@ class ViewCoverage {
   /// Views in which the board's left, right, upper or lower side (in the image) is the nearer one.
   std::array<int, 4> tilted_{};
   double min_distance_m_ = 0.0, max_distance_m_ = 0.0;
-  double reach_ = 0.0;
+  double reach_fraction_ = 0.0;
 };
 
 }  // namespace isotherm

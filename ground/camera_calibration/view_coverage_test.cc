@@ -1,4 +1,4 @@
-#include "ground/camera_calibration/coverage.h"
+#include "ground/camera_calibration/view_coverage.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "ground/camera_calibration/coverage.h"
+#include "ground/camera_calibration/view_coverage.h"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,12 @@
 namespace isotherm {
 namespace {
 
+// What a set of views should have, as the guides to calibration ask: tilts that tell focal length
+// from distance, several distances, features near the corners, where a lens bends most. Less: the
+// report's uncertainty grows; more: nobody has the patience. Not tuned.
 constexpr double kTilted_deg = 20.0;
-/// The farthest view should be at least this many times as far as the nearest.
-constexpr double kMinDistanceRatio = 1.3;
-constexpr double kMinReach = 0.85;
+constexpr double kMinDistanceRatio = 1.3;  ///< Farthest view to nearest.
+constexpr double kMinReachFraction = 0.85;
 constexpr int kEnoughViews = 30;
 
 constexpr std::array<const char*, 9> kZoneNames = {
@@ -35,7 +37,7 @@ void ViewCoverage::Add(const std::vector<Eigen::Vector2d>& features_px,
     const int row = static_cast<int>(p.y() / size.y() * kZoneRows);
     ++zones_[static_cast<std::size_t>(std::clamp(row, 0, kZoneRows - 1) * kZoneColumns +
                                       std::clamp(column, 0, kZoneColumns - 1))];
-    reach_ = std::max(reach_, (p - middle).norm() / middle.norm());
+    reach_fraction_ = std::max(reach_fraction_, (p - middle).norm() / middle.norm());
   }
   const double distance_m = T_camera_board.translation().norm();
   min_distance_m_ = views_ == 0 ? distance_m : std::min(min_distance_m_, distance_m);
@@ -70,10 +72,10 @@ std::vector<std::string> ViewCoverage::Missing() const {
         "all views at about the same distance ({:.2f} to {:.2f} m): take some nearer or farther",
         min_distance_m_, max_distance_m_));
   }
-  if (views_ > 0 && reach_ < kMinReach) {
+  if (views_ > 0 && reach_fraction_ < kMinReachFraction) {
     missing.push_back(fmt::format(
         "no feature beyond {:.0f} % of the way from the middle to a corner of the image",
-        100.0 * reach_));
+        100.0 * reach_fraction_));
   }
   if (views_ < kEnoughViews)
     missing.push_back(fmt::format("{} views of {} that are advised", views_, kEnoughViews));
