@@ -70,9 +70,10 @@ std::string OldText(const EdgeSituation& situation) {
   return is_old ? fmt::format("advice {:.1f} s OLD", ToSeconds(*situation.feedback_age)) : "";
 }
 
-std::string ReceiptText(const StreamReceipt& receipt) {
-  return fmt::format("ground received {}, missing {}", receipt.received,
-                     receipt.next - receipt.received);
+/// Says how many arrived of those that left the rig; the line above has the others. The ground's
+/// summary calls the difference missing.
+std::string ReceiptText(const StreamReceipt& receipt, std::uint64_t published) {
+  return fmt::format("ground received {} of {} published", receipt.received, published);
 }
 
 }  // namespace
@@ -232,7 +233,8 @@ std::string Summary(const FrameCounters& counters, bool recording,
     }
     if (receipt) {
       text +=
-          fmt::format("{}  {}\n", name, ReceiptText(is_depth ? receipt->depth : receipt->thermal));
+          fmt::format("{}  {}\n", name,
+                      ReceiptText(is_depth ? receipt->depth : receipt->thermal, counts.published));
     }
   }
   text += fmt::format("feedback {} messages, depth capture to arrival {}\n", feedback.count,

@@ -108,11 +108,14 @@ TEST_F(EdgeReportTest, FramesThatTheCamerasProcessLeftOutAreCapturedAndDropped) 
   }));
 }
 
-TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHas) {
+TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHasOfWhatLeftTheRig) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 13);
+  Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 3);
+  Count(Sensor::kDepth, FrameFate::kPublished, 10);
   Receipt receipt;
-  receipt.depth = {.next = 10, .handled = 10, .received = 9};
+  receipt.depth = {.next = 13, .handled = 13, .received = 9};
   EXPECT_THAT(Summary(counters_, false, receipt, {}),
-              HasSubstr("depth    ground received 9, missing 1"));
+              HasSubstr("depth    ground received 9 of 10 published\n"));
 }
 
 TEST_F(EdgeReportTest, SummarySaysHowSoonTheGroundAnswered) {
