@@ -25,8 +25,9 @@ inline Image<std::uint16_t> SmallNoise(int width, int height, std::uint16_t base
   return image;
 }
 
-/// Writes a second of both cameras, in small images, for an edge to replay.
-inline void WriteSmallScan(const std::filesystem::path& path) {
+/// Writes a second of both cameras, in small images (or some times as wide and high), for an edge
+/// to replay.
+inline void WriteSmallScan(const std::filesystem::path& path, int scale = 1) {
   using std::chrono::milliseconds;
   const Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, {});
   ASSERT_TRUE(writer.has_value()) << writer.error().message();
@@ -36,12 +37,13 @@ inline void WriteSmallScan(const std::filesystem::path& path) {
     EncodedDepthFrame depth;
     depth.header.frame_number = static_cast<std::uint64_t>(i);
     depth.header.capture_time = time;
-    depth.image = DepthEncoder().Encode(SmallNoise(64, 48, 700));
+    depth.image = DepthEncoder().Encode(SmallNoise(scale * 64, scale * 48, 700));
     ASSERT_TRUE((*writer)->Write(depth, std::nullopt).ok());
     EncodedThermalFrame thermal;
     thermal.header = depth.header;
     thermal.header.capture_time = time + milliseconds(7);
-    thermal.image = ThermalEncoder().Encode(SmallNoise(38, 28, 29'815), thermal.scale);
+    thermal.image =
+        ThermalEncoder().Encode(SmallNoise(scale * 38, scale * 28, 29'815), thermal.scale);
     ASSERT_TRUE((*writer)->Write(thermal, std::nullopt).ok());
   }
   ASSERT_TRUE((*writer)->Close().ok());

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/pkt_cls.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -17,6 +22,7 @@
 namespace isotherm::system_test {
 
 inline constexpr const char* kIp = "/usr/sbin/ip";
+inline constexpr const char* kTc = "/usr/sbin/tc";
 
 /// A computer: a network namespace that is connected to the other one by one interface.
 struct Host {
@@ -33,6 +39,8 @@ class TwoHostsTest : public ::testing::Test {
     const bool may = geteuid() == 0 && std::filesystem::exists(kIp) &&
                      Ip({"netns", "add", edge_.name}) && Ip({"netns", "add", ground_.name});
     if (!may) GTEST_SKIP() << "no network of its own: network namespaces take root and iproute2";
+    // Every computer has one; without, the middleware cannot wake its own threads to end.
+    for (const Host& host : {edge_, ground_}) ASSERT_TRUE(In(host, {"link", "set", "lo", "up"}));
   }
   ~TwoHostsTest() override {
     for (const Host& host : {edge_, ground_}) Ip({"netns", "del", host.name});
@@ -67,6 +75,52 @@ class TwoHostsTest : public ::testing::Test {
   void CarryAgain() const {
     for (const auto& [from, to] : {std::pair(edge_, ground_), std::pair(ground_, edge_)})
       ASSERT_TRUE(In(from, {"neigh", "del", to.address, "dev", from.interface}));
+  }
+
+  static bool Tc(const Host& host, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"-n", host.name});
+    return std::filesystem::exists(kTc) &&
+           RunToEnd({kTc, std::move(arguments), {}, {}}, kPatience).status == 0;
+  }
+  /// Returns an instruction as tc reads it: what to do, how many to pass over, and with what.
+  static std::string Instruction(int code, int over, std::uint32_t with) {
+    return std::to_string(code) + " 0 " + std::to_string(over) + " " + std::to_string(with) + ",";
+  }
+  /// Loses this fraction of the packets that arrive at `host`, of any kind and by chance, before
+  /// anything there sees them; its sender is not told. Returns false if this kernel cannot.
+  static bool Lose(const Host& host, double fraction) {
+    constexpr auto kAll = std::numeric_limits<std::uint32_t>::max();
+    const auto limit = static_cast<std::uint32_t>(std::lround(fraction * kAll));
+    // A classic packet filter: dropped is what draws a random word below the limit.
+    const std::string filter =
+        "4," + Instruction(BPF_LD | BPF_W | BPF_ABS, 0, SKF_AD_OFF + SKF_AD_RANDOM) +
+        Instruction(BPF_JMP | BPF_JGE | BPF_K, 1, limit) +  // If it is smaller, passes over one.
+        Instruction(BPF_RET | BPF_K, 0, TC_ACT_OK) + Instruction(BPF_RET | BPF_K, 0, TC_ACT_SHOT);
+    Tc(host, {"qdisc", "add", "dev", host.interface, "clsact"});  // Fails if it is there.
+    return Tc(host, {"filter", "replace", "dev", host.interface, "ingress", "prio", "1", "handle",
+                     "1", "bpf", "direct-action", "bytecode", filter});
+  }
+  /// Returns how many packets Lose() has lost at `host`.
+  static long Lost(const Host& host) {
+    const Finished shown = RunToEnd(
+        {kTc, {"-n", host.name, "-s", "qdisc", "show", "dev", host.interface}, {}, {}}, kPatience);
+    const std::size_t ingress = shown.output.find("clsact");
+    const std::string word = "(dropped ";
+    const std::size_t at = shown.output.find(word, ingress);
+    if (ingress == std::string::npos || at == std::string::npos) {
+      ADD_FAILURE() << "no count of lost packets: " << shown.output;
+      return 0;
+    }
+    return std::stol(shown.output.substr(at + word.size()));
+  }
+  /// Carries no more than `rate` ("1mbit") of what `host` sends. Returns false if this kernel
+  /// cannot.
+  static bool Narrow(const Host& host, const std::string& rate) {
+    return Tc(host, {"qdisc", "replace", "dev", host.interface, "root", "tbf", "rate", rate,
+                     "burst", "8kb", "latency", "100ms"});
+  }
+  static void Widen(const Host& host) {
+    ASSERT_TRUE(Tc(host, {"qdisc", "del", "dev", host.interface, "root"}));
   }
 
   static std::string Shipped(const std::string& profile) {
