@@ -31,6 +31,10 @@ TEST(PrintableTest, F65BytesThatAreNoUtf8AreShown) {
                       "31m"),
             "\\x9b31m");
   EXPECT_EQ(Printable("\xc0\x9b"), "\\xc0\\x9b") << "longer than it must be";
+  EXPECT_EQ(Printable("\xc0\xaf"), "\\xc0\\xaf") << "a slash";
+  EXPECT_EQ(Printable("\xe0\x80\xaf"), "\\xe0\\x80\\xaf");
+  EXPECT_EQ(Printable("\xf0\x80\x80\xaf"), "\\xf0\\x80\\x80\\xaf");
+  EXPECT_EQ(Printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80") << "beyond the last character";
   EXPECT_EQ(Printable("\xed\xa0\x80"), "\\xed\\xa0\\x80") << "half of a pair";
   EXPECT_EQ(Printable("\xe2\x82"), "\\xe2\\x82") << "cut off";
   EXPECT_EQ(Printable("\xff"), "\\xff");

@@ -232,6 +232,11 @@ TEST_F(ImageFileTest, WrongSizeDepthOrChannelsAreSaid) {
   EXPECT_THAT(ReadError("colour.png"), HasSubstr("3 channels"));
 }
 
+TEST_F(ImageFileTest, F65AFileThatIsTooLargeForAnImageIsRefusedBeforeItIsRead) {
+  std::filesystem::resize_file(folder_.path() / "depth/0.png", (64U << 20U) + 1);
+  EXPECT_THAT(ReadError("depth/0.png"), HasSubstr("more than are read"));
+}
+
 TEST_F(ImageFileTest, F65NoOtherFormatIsOpenedWhateverItsName) {
   // Other programs' files start like this: TIFF in both byte orders, JPEG, BMP, OpenEXR, PNM, GIF.
   for (const std::string& start :

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <sys/resource.h>
 #include <zlib.h>
 
 #include <array>
@@ -81,6 +82,13 @@ Bytes Rows(const Grey& image) {
   return rows;
 }
 
+/// The most that this process has had so far.
+long PeakMemory_kb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
 Status Decode(const Bytes& file, int width, int height) {
   Grey image(width, height);
   return DecodeGrey16Png(file, image);
@@ -154,6 +162,23 @@ TEST(PngTest, F65PixelsBeyondTheImageAndOtherChunksAreNotUnpacked) {
   static_cast<void>(DecodeGrey16Png(Png(9, 4, kGrey16, Deflated(rows)), decoded));
   // 100 texts of 64 MB take half a minute to unpack.
   EXPECT_LT(std::clock() - before, 5 * CLOCKS_PER_SEC);
+}
+
+TEST(PngTest, F65NoTextOfAFileIsKept) {
+  // Each text is small enough for libpng, which would keep all of them: 800 MB.
+  const Bytes packed = Deflated(Bytes(4U << 20, 'x'));
+  const auto with_texts = [&packed](Bytes& file) {
+    Bytes text = {'k', 0, 0};
+    text.insert(text.end(), packed.begin(), packed.end());
+    for (int i = 0; i < 200; ++i) AppendChunk("zTXt", text, file);
+  };
+  const Grey image = Noise(9, 4);
+  const Bytes file = Png(9, 4, kGrey16, Deflated(Rows(image)), with_texts);
+  Grey decoded(9, 4);
+  const long before_kb = PeakMemory_kb();
+  ASSERT_TRUE(DecodeGrey16Png(file, decoded).ok());
+  EXPECT_EQ(decoded, image);
+  EXPECT_LT(PeakMemory_kb() - before_kb, 50'000);
 }
 
 TEST(PngTest, F65EveryTruncationIsAnErrorAndNothingIsReadBeyondTheEnd) {

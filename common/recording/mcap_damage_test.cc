@@ -119,6 +119,28 @@ TEST_F(McapTest, F45FlippedBitInALengthCostsAtMostThatChunk) {
   }
 }
 
+TEST_F(McapTest, F45BytesThatLookLikeAChunkDoNotHideTheChunksBehindThem) {
+  WriteFile({10, 50, 200, 210, 400}, /*close=*/false);
+  const auto complete = Read(unfinished_);
+  ASSERT_TRUE(complete);
+  const auto at = static_cast<long>(complete->index.segments.at(1).offset);
+  const Bytes rest(unfinished_.begin() + at, unfinished_.end());
+  Bytes damaged(unfinished_.begin(), unfinished_.begin() + at);
+  damaged.push_back(0);  // No record begins so: the next one is looked for.
+  // Its lengths fit each other and the end of the file; only its checksum does not.
+  Append(ChunkHeader{.start = 0,
+                     .end = 0,
+                     .uncompressed_size = rest.size(),
+                     .uncompressed_crc = 1,
+                     .compression = "",
+                     .compressed_size = rest.size()},
+         rest, damaged);
+  const auto contents = Read(damaged);
+  ASSERT_TRUE(contents);
+  EXPECT_EQ(contents->notes, complete->notes);
+  EXPECT_TRUE(contents->errors.empty());
+}
+
 TEST_F(McapTest, F45FlippedBitOutsideTheChunksCostsNoMessage) {
   WriteFile({10, 50, 200, 210, 400, 401, 402, 600}, /*close=*/false);
   const auto complete = Read(unfinished_);

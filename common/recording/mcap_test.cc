@@ -191,6 +191,58 @@ TEST_F(McapTest, ChunkThatClaimsTooMuchIsRefusedBeforeAllocating) {
   EXPECT_GT(contents->index.bytes_ignored, 0U);
 }
 
+TEST_F(McapTest, F65AChunkOfTooManyMessagesIsRefused) {
+  Bytes records;
+  for (std::size_t i = 0; i <= kMaxChunkMessages; ++i) Append(Message{}, records);
+  Bytes bytes(kMagic.begin(), kMagic.end());
+  Append(Header{}, bytes);
+  Append(ChunkHeader{.start = 0,
+                     .end = 0,
+                     .uncompressed_size = records.size(),
+                     .uncompressed_crc = 0,
+                     .compression = "",
+                     .compressed_size = records.size()},
+         records, bytes);
+  const auto contents = Read(bytes);
+  ASSERT_TRUE(contents);
+  EXPECT_TRUE(contents->notes.empty());
+  EXPECT_GT(contents->index.bytes_ignored, records.size());
+}
+
+TEST_F(McapTest, F65DefinitionsAndMetadataBeyondTheirLimitsAreLeftOut) {
+  constexpr std::size_t kEachBytes = 900'000;
+  const std::string text(kEachBytes, 'x');
+  Bytes bytes(kMagic.begin(), kMagic.end());
+  Append(Header{}, bytes);
+  for (SchemaId id = 1; id <= 20; ++id)
+    Append(Schema{.id = id, .name = "s", .encoding = "", .data = text}, bytes);
+  for (int i = 0; i < 6; ++i) Append(Metadata{.name = "m", .values = {{"k", text}}}, bytes);
+  const auto contents = Read(bytes);
+  ASSERT_TRUE(contents);
+  EXPECT_EQ(contents->index.definitions.schemas.size(), kMaxDefinitionsBytes / kEachBytes);
+  EXPECT_EQ(contents->index.metadata.size(), kMaxMetadataBytes / kEachBytes);
+}
+
+TEST_F(McapTest, F65MetadataThatASummaryListsOftenIsReadOnce) {
+  Bytes bytes(kMagic.begin(), kMagic.end());
+  Append(Header{}, bytes);
+  const std::uint64_t offset = bytes.size();
+  Append(Metadata{.name = "m", .values = {{"k", std::string(1'000'000, 'x')}}}, bytes);
+  const std::uint64_t length = bytes.size() - offset;
+  Append(DataEnd{}, bytes);
+  const std::uint64_t summary = bytes.size();
+  Statistics statistics;
+  statistics.metadata_count = 10;
+  Append(statistics, bytes);
+  for (int i = 0; i < 10; ++i)
+    Append(MetadataIndex{.offset = offset, .length = length, .name = "m"}, bytes);
+  Append(Footer{.summary_start = summary}, bytes);
+  bytes.insert(bytes.end(), kMagic.begin(), kMagic.end());
+  const auto contents = Read(bytes);
+  ASSERT_TRUE(contents);
+  EXPECT_EQ(contents->index.metadata.size(), 1U);
+}
+
 TEST_F(McapTest, TooLargeMessageIsRefusedAndTheFileGoesOn) {
   auto writer = MakeWriter();
   const Bytes large(Writer::kMaxMessageBytes + 1);

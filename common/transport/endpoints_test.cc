@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "common/transport/instance_limit.h"
 #include "common/transport/qos.h"
 #include "common/transport/testing/example_messages.h"
 #include "common/transport/testing/joined_ends.h"
@@ -61,6 +62,26 @@ TEST_F(EndpointsTest, LeavingIsSeenByTheOtherSide) {
     std::this_thread::yield();
   }
   EXPECT_EQ(reader.matched_writers(), 0);
+}
+
+TEST_F(EndpointsTest, F62OfTheNamesOfOneWriterSoManyAreTakenAndTheOthersAreCounted) {
+  constexpr std::size_t kTooMany = 5;
+  Reader<Hello> reader;
+  ASSERT_TRUE(reader.Open(*ground_, &refusals_).ok());
+  Writer<Hello> writer;
+  ASSERT_TRUE(writer.Open(*edge_).ok());
+  for (std::size_t i = 0; i < InstanceLimit::kPerWriter + kTooMany; ++i)
+    ASSERT_TRUE(writer.Write("edge-" + std::to_string(i), Hello{}).ok());
+  std::size_t taken = 0;
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (taken + refusals_.count(RefusalCause::kTooManyNames) <
+             InstanceLimit::kPerWriter + kTooMany &&
+         std::chrono::steady_clock::now() < deadline) {
+    reader.Take([&](Received<Hello>&&) { ++taken; });
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(taken, InstanceLimit::kPerWriter);
+  EXPECT_EQ(refusals_.count(RefusalCause::kTooManyNames), kTooMany);
 }
 
 TEST_F(EndpointsTest, F60OversizePayloadIsNotWritten) {

@@ -18,6 +18,7 @@ namespace {
 using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -57,7 +58,7 @@ class EdgeMonitorTest : public ::testing::Test {
 
   FakeClock clock_;
   HostStatus host_status_;
-  FakeSource source_{""};
+  FakeSource source_{"%"};  ///< Nobody reads it before StartCapture.
   FakePublisher publisher_;
   FrameCounters counters_;
   CameraHealth health_;
@@ -164,6 +165,22 @@ TEST_F(EdgeMonitorTest, F39ACameraThatCountsAsWorkingAndSendsNothingIsNoSignOfLi
   Pass(seconds(20));
   EXPECT_EQ(fed_, before);
   Pass(seconds(5), 1);
+  EXPECT_EQ(fed_, before + 1) << "it goes on";
+}
+
+TEST_F(EdgeMonitorTest, F39WhatIsStuckIsNoSignOfLife) {
+  ASSERT_TRUE(source_.Open().ok());
+  Make().Tick();
+  pipeline_.StartCapture();
+  while (!source_.hangs()) std::this_thread::yield();
+  Pass(seconds(10));
+  const int before = fed_;
+  Pass(seconds(20));
+  EXPECT_EQ(fed_, before);
+  EXPECT_THAT(told_, Contains(HasSubstr("the source of frames does not answer")));
+  source_.Release();
+  while (pipeline_.StuckIn(clock_.SteadyNow())) std::this_thread::yield();
+  Pass(seconds(5));
   EXPECT_EQ(fed_, before + 1) << "it goes on";
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,13 +15,33 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class EdgePipelineTest : public EdgePipelineFixture {};
+using std::chrono::seconds;
+
+class EdgePipelineTest : public EdgePipelineFixture {
+ protected:
+  /// Returns what does not answer, so much later; empty = nothing.
+  std::string StuckAfter(Nanoseconds time) const {
+    return pipeline_->StuckIn(clock_.SteadyNow() + time).value_or("");
+  }
+  /// Captures one frame and waits until whoever gets it is at it. Only a failure waits this long.
+  void CaptureOneUntilStuckIn(const std::string& what) {
+    while (counters_.Get(Sensor::kDepth).captured == 0) std::this_thread::yield();
+    ASSERT_TRUE(pipeline_->StopCapture(std::chrono::hours(1)));
+    const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+    while (StuckAfter(std::chrono::hours(1)) != what) {
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "nobody sees that it is stuck";
+      std::this_thread::yield();
+    }
+  }
+};
 
 TEST_F(EdgePipelineTest, FeedbackIsKeptAndRecordedWithTheScan) {
   Feedback feedback;
   feedback.frame_number = 3;
   publisher_.feedback = {{feedback, CaptureTime{}}, {feedback, CaptureTime{}}};
   Start("5*d");
+  // A feedback that comes when the recording is closed already is not in it.
+  while (!publisher_.handed_over()) std::this_thread::yield();
   EXPECT_TRUE(RunToTheEnd().ok());
   EXPECT_EQ(pipeline_->feedback().newest()->frame_number, 3U);
   EXPECT_EQ(pipeline_->feedback().latency().count, 2U);
@@ -63,6 +85,51 @@ TEST_F(EdgePipelineTest, F39ACameraThatIsStuckCostsTheRecordingNothing) {
   EXPECT_EQ(publisher_.depth().size(), 3U);
   ExpectBalancedCounters();
   camera_->Release();
+}
+
+TEST_F(EdgePipelineTest, F01WhatIsCollectedGoesToTheDiskWhenFramesStop) {
+  Start("d %");
+  while (!camera_->hangs()) std::this_thread::yield();
+  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+  while (recording_.flushes == 0 && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  EXPECT_GE(recording_.flushes.load(), 1);
+  camera_->Release();
+  EXPECT_TRUE(RunToTheEnd().ok());
+}
+
+TEST_F(EdgePipelineTest, F39ASourceThatDoesNotAnswerForTenSecondsIsStuck) {
+  Start("%", /*record=*/false);
+  while (!camera_->hangs()) std::this_thread::yield();
+  EXPECT_EQ(StuckAfter(seconds(10)), "");
+  EXPECT_EQ(StuckAfter(seconds(11)), "the source of frames does not answer");
+  camera_->Release();
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(StuckAfter(seconds(11)), "");
+}
+
+TEST_F(EdgePipelineTest, F39ADiskThatDoesNotAnswerForTenSecondsIsStuck) {
+  std::promise<void> answer;
+  recording_.before_frame = [answered = answer.get_future().share()] { answered.wait(); };
+  Start("d");
+  CaptureOneUntilStuckIn("the disk does not answer");
+  EXPECT_EQ(StuckAfter(seconds(10)), "");
+  EXPECT_EQ(StuckAfter(seconds(11)), "the disk does not answer");
+  answer.set_value();
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(StuckAfter(seconds(11)), "");
+}
+
+TEST_F(EdgePipelineTest, F39ALinkThatDoesNotAnswerForFifteenSecondsIsStuck) {
+  publisher_.Hold();
+  Start("d", /*record=*/false);
+  CaptureOneUntilStuckIn("the network does not answer");
+  EXPECT_EQ(StuckAfter(seconds(15)), "");
+  EXPECT_EQ(StuckAfter(seconds(16)), "the network does not answer");
+  publisher_.Release();
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(StuckAfter(seconds(16)), "");
 }
 
 TEST_F(EdgePipelineTest, OdometryPosesAreRecordedAndPublishedWithTheNextFrame) {

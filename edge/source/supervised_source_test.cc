@@ -131,6 +131,20 @@ TEST_F(SupervisedSourceTest, FramesThatWereLeftOutAndFramesThatTheCameraLostAreT
   EXPECT_EQ((losses[{Sensor::kThermal, Loss::kInCamera}]), 0U);
 }
 
+TEST_F(SupervisedSourceTest, F14WhatWasLeftOutUntilTheEndIsCounted) {
+  Start("d");
+  std::uint64_t left_out = 0;
+  source_->OnLoss([&left_out](Sensor sensor, Loss loss, std::uint64_t frames) {
+    EXPECT_EQ(sensor, Sensor::kDepth);
+    EXPECT_EQ(loss, Loss::kLeftOut);
+    left_out += frames;
+  });
+  EXPECT_EQ(Read(1), 1);
+  fake_->left_out_at_close = 4;
+  source_->Close();
+  EXPECT_EQ(left_out, 4U);
+}
+
 TEST_F(SupervisedSourceTest, WhatIsLostBeforeTheScanBeginsCountsNothing) {
   Start("d:lost d:left d d:lost");
   std::uint64_t lost = 0;
@@ -166,6 +180,22 @@ TEST_F(SupervisedSourceTest, TheWaitDoublesUpToItsLimit) {
     EXPECT_EQ(fake_->opened(), attempt + 1);
     expected = std::min(2 * expected, milliseconds(5000));
   }
+}
+
+TEST_F(SupervisedSourceTest, AGoodFrameEndsTheLongWaits) {
+  Start("! d ! d");
+  Read(1);
+  fake_->FailToOpen(6);
+  for (int attempt = 0; attempt < 7; ++attempt) {
+    clock_.Advance(milliseconds(5000));
+    Read(1);
+  }
+  ASSERT_EQ(Read(1), 1);
+  Read(1);
+  const int opened = fake_->opened();
+  clock_.Advance(milliseconds(500));
+  Read(1);
+  EXPECT_EQ(fake_->opened(), opened + 1);
 }
 
 TEST_F(SupervisedSourceTest, CameraThatSendsCountsKeepsThem) {

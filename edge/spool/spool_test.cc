@@ -186,6 +186,27 @@ TEST_F(SpoolTest, F31ADiskThatIsNotThereIsWaitedForWithABackOff) {
   EXPECT_EQ(depth().recorded, 1U);
 }
 
+TEST_F(SpoolTest, F43ADiskThatHasProvenItselfIsTriedAgainSoonWhenItFails) {
+  disk_works_ = false;
+  Start();
+  for (int i = 0; i < 5; ++i) {
+    clock_.Advance(kLongerThanAnyBackOff);
+    Record(0);
+  }
+  disk_works_ = true;
+  room_ = 2;
+  clock_.Advance(kLongerThanAnyBackOff);
+  Record(1);
+  clock_.Advance(std::chrono::seconds(4));
+  Record(2);
+  EXPECT_EQ(spool_->status().problem, "");
+  Record(3);
+  ASSERT_NE(spool_->status().problem, "") << "the disk is full";
+  clock_.Advance(milliseconds(500));
+  Record(4);
+  EXPECT_EQ(files_.size(), 2U);
+}
+
 TEST_F(SpoolTest, F41AtTheReserveTheFileIsEndedProperlyAndGoesOnWhenThereIsSpace) {
   Start();
   const auto record_for = [this](int seconds) {

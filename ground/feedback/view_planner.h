@@ -110,7 +110,7 @@ class ViewPlanner {
   std::optional<NextView> best_;
   std::vector<NextView> kept_;
   std::optional<RigidTransform> T_map_depth_before_;
-  double unseen_m2_ = 0.0;           ///< What Unseen() found in the last complete round, at most.
+  double unseen_m2_ = 0.0;           ///< The most that Unseen() found in the last complete round.
   double unseen_in_round_m2_ = 0.0;  ///< The same, so far in this round.
   bool is_firm_here_ = false;        ///< The rig is tracked firmly where it is.
   int rounds_ = 0;                   ///< Rounds of candidates begun.

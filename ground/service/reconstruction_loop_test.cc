@@ -17,6 +17,7 @@ namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -185,6 +186,20 @@ TEST_F(ReconstructionLoopTest, RoomOnTheDiskIsAskedForAsTheModelGrows) {
     bytes += entry.is_regular_file() ? entry.file_size() : 0;
   EXPECT_GT(asked.back(), bytes / 2) << "it has to do with what the results take";
   EXPECT_LT(asked.back(), 20 * bytes);
+}
+
+TEST_F(ReconstructionLoopTest, F39WhoIsStuckAtAFrameIsSeenToBe) {
+  std::vector<Nanoseconds> at_it;
+  subscriber_.on_publish = [&] { at_it.push_back(progress_.AtItFor(clock_.SteadyNow() + 11s)); };
+  Start(1);
+  Frames(4);
+  Close(1);
+  Run();
+  AwaitResults(1);
+  End();
+  EXPECT_FALSE(at_it.empty());
+  EXPECT_THAT(at_it, Each(Nanoseconds(11s)));
+  EXPECT_EQ(progress_.AtItFor(clock_.SteadyNow() + 1h), 0ns);
 }
 
 TEST_F(ReconstructionLoopTest, ANewSessionEndsTheOneBefore) {

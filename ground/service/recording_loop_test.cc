@@ -13,6 +13,7 @@ namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::kScanStart;
@@ -95,7 +96,10 @@ class RecordingLoopTest : public ::testing::Test {
   ScanBoard board_;
   ThreadProgress progress_;
   RecordingQueue queue_{{.items = 1000, .bytes = 1U << 30}};
-  RecordingLoop loop_{options_, clock_, board_, progress_, [](const std::filesystem::path&) {
+  std::vector<Nanoseconds>
+      at_it_;  ///< At each look at the disk, a minute later; not while it runs.
+  RecordingLoop loop_{options_, clock_, board_, progress_, [this](const std::filesystem::path&) {
+                        at_it_.push_back(progress_.AtItFor(clock_.SteadyNow() + 60s));
                         return std::filesystem::space_info{.capacity = 4 * kFreeBytes,
                                                            .free = kFreeBytes,
                                                            .available = kFreeBytes};
@@ -203,6 +207,32 @@ TEST_F(RecordingLoopTest, FeedbackOnTheSessionBeforeIsNotRecorded) {
   EXPECT_TRUE(HasFeedback(Folder(1) / "scan.mcap"));
   EXPECT_FALSE(HasFeedback(Folder(2) / "scan.mcap"));
   EXPECT_FALSE(HasFeedback(Folder(3) / "scan.mcap"));
+}
+
+TEST_F(RecordingLoopTest, F39WhoIsStuckAtTheDiskIsSeenToBe) {
+  Start();
+  Depths(1);
+  Run();
+  Await();
+  End();
+  EXPECT_FALSE(at_it_.empty());
+  EXPECT_THAT(at_it_, Each(Nanoseconds(60s)));
+  EXPECT_EQ(progress_.AtItFor(clock_.SteadyNow() + 1h), 0ns);
+}
+
+TEST_F(RecordingLoopTest, F37WhatIsCollectedGoesToTheDiskWhenFramesStop) {
+  Start();
+  Depths(1);
+  Run();
+  Await();
+  const auto has_frame = [this] {
+    const auto reader = RecordingReader::Open(Folder(kSession) / "scan.mcap");
+    return reader && (*reader)->info().messages_by_topic.contains("/depth");
+  };
+  // Only a failure waits this long.
+  const auto deadline = std::chrono::steady_clock::now() + 10s;
+  while (!has_frame() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_TRUE(has_frame()) << "a power cut would cost it";
 }
 
 TEST_F(RecordingLoopTest, WithoutARecordingTheFolderIsThereForTheResults) {

@@ -235,6 +235,16 @@ TEST_F(RigGateTest, TheNextEdgeFollowsAtOnceWhenTheSessionIsClosed) {
   EXPECT_EQ(gate_.owner(), kSecond);
 }
 
+TEST_F(RigGateTest, F60ASessionThatTheOwnerHasLeftDoesNotComeBack) {
+  Add(kFirst, Rig(1));
+  Add(kFirst, Rig(2));
+  Add(kFirst, Frame(1, 0));  // Was still under way.
+  Add(kFirst, Rig(1));       // Repeated, for instance after an outage.
+  Add(kFirst, Frame(2, 0));
+  EXPECT_THAT(passed_, ElementsAre("rig 1", "rig 2", "frame 2/0"));
+  EXPECT_EQ(refused(RefusalCause::kOtherSession), 2U);
+}
+
 TEST_F(RigGateTest, WhoAnnouncesComesBeforeWhoOnlySentSomething) {
   Add(kSecond, Frame(5, 0));
   Add(kSecond, StatusOf(5, ScanState::kEnded));

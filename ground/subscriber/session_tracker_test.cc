@@ -114,6 +114,33 @@ TEST_F(SessionTrackerTest, ASessionThatNeverEndedClosesWhenAnotherHasBegun) {
   EXPECT_EQ(sessions_.newest(), 2U);
 }
 
+TEST_F(SessionTrackerTest, F33TheNumbersOfAKilledEdgeAreNotThoseOfItsSuccessor) {
+  EdgeStatus killed = Status(1, ScanState::kScanning, 9, 5);
+  killed.depth.captured = 12;
+  killed.feedback.count = 3;
+  sessions_.OnStatus(killed, now_);
+  SessionClock clock;
+  clock.session = 1;
+  clock.alarms = 7;
+  sessions_.SetClock(clock);
+  EdgeStatus successor = Status(2, ScanState::kEnded, 100, 50);
+  successor.depth.captured = 200;
+  successor.feedback.count = 30;
+  sessions_.OnStatus(successor, now_ + 1s);
+  const SessionCounters first = sessions_.Counters(Tally(1, 9, 9), Tally(1, 5, 5));
+  EXPECT_FALSE(first.ended);
+  EXPECT_EQ(first.depth.published, 9U);
+  EXPECT_EQ(first.depth.captured_by_rig, 12U);
+  EXPECT_EQ(first.feedback.count, 3U);
+  ASSERT_TRUE(first.clock.has_value());
+  EXPECT_EQ(first.clock->alarms, 7U);
+  const SessionCounters second = sessions_.Counters(Tally(2, 100, 100), Tally(2, 50, 50));
+  EXPECT_TRUE(second.ended);
+  EXPECT_EQ(second.depth.captured_by_rig, 200U);
+  EXPECT_EQ(second.feedback.count, 30U);
+  EXPECT_FALSE(second.clock.has_value());
+}
+
 TEST_F(SessionTrackerTest, AnIdleEdgeOpensNoSession) {
   sessions_.OnStatus(Status(0, ScanState::kIdle, 0, 0), now_);
   EXPECT_EQ(sessions_.newest(), std::nullopt);

@@ -108,6 +108,15 @@ TEST_F(StreamReceiverTest, F60UndecodablePayloadIsRefusedAndItsNumberStaysFree) 
   EXPECT_EQ(delivered_.size(), 1U);
 }
 
+TEST_F(StreamReceiverTest, F60AnImageOfMorePixelsThanACameraHasIsRefused) {
+  EncodedThermalFrame large = MakeFrame(1, 0);
+  large.image.width = 1 << 12;
+  large.image.height = (1 << 10) + 1;
+  large.image.payload.resize(2 * (kMaxFramePixels + (std::size_t{1} << 12U)));
+  EXPECT_FALSE(Add(large));
+  EXPECT_EQ(refusals_.count(RefusalCause::kUndecodable), 1U);
+}
+
 TEST_F(StreamReceiverTest, F60UndecodableFrameDoesNotStartASession) {
   Add(MakeFrame(1, 0));
   EncodedThermalFrame broken = MakeFrame(2, 0);
@@ -133,6 +142,16 @@ TEST_F(StreamReceiverTest, ANewSessionIsCountedFromZero) {
   EXPECT_EQ(receiver_.tally(7).received, 1U);
   EXPECT_EQ(receiver_.receipt(7).handled, 1U);
   EXPECT_EQ(receiver_.receipt(11).handled, 0U) << "the edge is told of the current one only";
+}
+
+TEST_F(StreamReceiverTest, OfASessionThatIsNotRememberedNothingIsCounted) {
+  for (const std::uint64_t session : {1U, 2U, 3U}) Add(MakeFrame(session, 0));
+  EXPECT_EQ(receiver_.tally(2).received, 1U);
+  for (const std::uint64_t session : {1U, 77U}) {
+    EXPECT_EQ(receiver_.tally(session).session, session);
+    EXPECT_EQ(receiver_.tally(session).received, 0U) << session;
+    EXPECT_EQ(receiver_.tally(session).next, 0U) << session;
+  }
 }
 
 TEST_F(StreamReceiverTest, MemoryOfSessionsIsBounded) {

@@ -311,7 +311,7 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
   const double max_distance_m = options_.expert().vertex_distance_vox() * voxel_m;
   args.max_distance_m = static_cast<float>(max_distance_m);
   // A distance measured along a normal is at most that along the line of sight, but for noise.
-  // Smaller: noisy voxels get no temperature; larger: the kernel looks at more in vain. Not tuned.
+  // Smaller: noisy voxels get no temperature; larger: the kernel looks at more voxels. Not tuned.
   constexpr double kNoiseMargin = 1.25;
   args.max_tsdf_code = static_cast<std::int32_t>(
       TsdfVoxel::kTsdfScale *

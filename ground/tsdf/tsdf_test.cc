@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,6 +16,8 @@
 
 namespace isotherm {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr double kVoxel = 0.004;
 constexpr double kTruncation = 0.016;
@@ -298,6 +301,23 @@ TEST_F(TsdfIntegratorTest, SeeingThroughAStrayVoxelClearsIt) {
   const DepthFrame frame = testing::RenderDepth(wall, camera_, testing::FirstPose());
   for (int i = 0; i < 20; ++i) Integrate(frame, testing::FirstPose());
   for (const TsdfVoxel& voxel : volume_.voxels(block)) EXPECT_GT(voxel.tsdf(), 0.5F);
+}
+
+TEST(TruncationDistanceTest, FollowsTheVoxelsUnlessItIsGiven) {
+  TsdfOptions options;
+  VolumeOptions volume;
+  for (const double voxel_m : {0.001, 0.002, 0.005, 0.02}) {
+    volume.set_voxel_size_m(voxel_m);
+    EXPECT_DOUBLE_EQ(TruncationDistance(options, volume), 4.0 * voxel_m);
+    EXPECT_TRUE(Validate(options, volume).ok()) << voxel_m;
+  }
+  options.mutable_expert()->set_truncation_distance_m(0.03);
+  EXPECT_EQ(TruncationDistance(options, volume), 0.03);
+  EXPECT_THAT(Validate(options, volume).message(), HasSubstr("at least two voxels"));
+  volume.set_voxel_size_m(0.015);
+  EXPECT_TRUE(Validate(options, volume).ok());
+  options.mutable_expert()->set_truncation_distance_m(8.0);
+  EXPECT_THAT(Validate(options, volume).message(), HasSubstr("at most 1 m"));
 }
 
 TEST(IntegrationGateTest, AcceptsMotionWithinBoundsAfterTheFirstFrames) {

@@ -19,6 +19,7 @@ class FakePublisher final : public Publisher {
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override {
     for (const Command& command : commands) handlers.command(command);
     for (const auto& [message, arrival] : feedback) handlers.feedback(message, arrival);
+    handed_over_ = true;
     MutexLock lock(mutex_);
     changed_.wait(lock, stop, [] { return false; });
   }
@@ -70,6 +71,9 @@ class FakePublisher final : public Publisher {
   /// Commands and feedback, with its arrival, that the ground sends at the start of Run.
   std::vector<Command> commands;
   std::vector<std::pair<Feedback, CaptureTime>> feedback;
+
+  /// Says whether Run has handed them over.
+  bool handed_over() const { return handed_over_; }
 
   void Break() { broken_ = true; }
   void Mend() { broken_ = false; }
@@ -134,6 +138,7 @@ class FakePublisher final : public Publisher {
   std::condition_variable_any changed_;
   bool held_ GUARDED_BY(mutex_) = false;
   std::atomic<bool> broken_{false};
+  std::atomic<bool> handed_over_{false};
   std::atomic<int> sessions_{0};
   std::optional<PublishPolicy> policy_;
   std::vector<EncodedDepthFrame> depth_ GUARDED_BY(mutex_);

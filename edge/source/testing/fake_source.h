@@ -41,7 +41,10 @@ class FakeSource final : public FrameSource {
   std::string_view name() const override { return "fake"; }
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
-  void Close() override { open_ = false; }
+  void Close() override {
+    open_ = false;
+    left_out_[0] += std::exchange(left_out_at_close, 0);
+  }
   /// Answers with `control_answer`, at once or this many reads later.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<ControlAnswer> TakeControlAnswers() override;
@@ -63,6 +66,8 @@ class FakeSource final : public FrameSource {
   std::vector<CameraControl> controls;          ///< Orders that it was given.
   Status control_answer = FailedPrecondition("the source has no shutter to command");
   int answers_after_reads = 0;  ///< 0: at once.
+  /// Depth frames of which only the end tells that they were left out.
+  std::uint64_t left_out_at_close = 0;
 
   /// The next calls of Open fail, this many of them.
   void FailToOpen(int times) { failures_to_open_ = times; }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,9 +26,10 @@ struct FakeRecording {
   std::vector<std::pair<std::string, CaptureTime>> messages;  ///< By topic.
   std::vector<RecordedLog> log;
   int writes_after_failure = 0;
-  int flushes = 0;
-  std::uint64_t bytes = 0;   ///< The writer reports this size.
-  bool refuse_next = false;  ///< The next frame is not one that can be recorded.
+  std::atomic<int> flushes = 0;
+  std::uint64_t bytes = 0;             ///< The writer reports this size.
+  std::function<void()> before_frame;  ///< Called on the thread that records, if set.
+  bool refuse_next = false;            ///< The next frame is not one that can be recorded.
   bool closed = false;
 };
 
@@ -86,6 +89,7 @@ class FakeRecordingWriter final : public RecordingWriter {
 
  private:
   Status Take(std::uint64_t frame_number, std::vector<std::uint64_t>& frames) {
+    if (recording_.before_frame) recording_.before_frame();
     if (std::exchange(recording_.refuse_next, false)) return InvalidArgument("no such frame");
     if (room_ == 0) {
       if (failed_++ > 0) ++recording_.writes_after_failure;
