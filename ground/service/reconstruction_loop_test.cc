@@ -18,7 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using ::testing::Each;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// Keeps the feedback that goes to the rig.
