@@ -128,13 +128,9 @@ TEST_F(McapTest, F45BytesThatLookLikeAChunkDoNotHideTheChunksBehindThem) {
   Bytes damaged(unfinished_.begin(), unfinished_.begin() + at);
   damaged.push_back(0);  // No record begins so: the next one is looked for.
   // Its lengths fit each other and the end of the file; only its checksum does not.
-  Append(ChunkHeader{.start = 0,
-                     .end = 0,
-                     .uncompressed_size = rest.size(),
-                     .uncompressed_crc = 1,
-                     .compression = "",
-                     .compressed_size = rest.size()},
-         rest, damaged);
+  ChunkHeader header = HeaderOf(rest);
+  header.uncompressed_crc = 1;
+  Append(header, rest, damaged);
   const auto contents = Read(damaged);
   ASSERT_TRUE(contents);
   EXPECT_EQ(contents->notes, complete->notes);

@@ -88,8 +88,7 @@ TEST_F(McapTest, SeekGoesToTheFirstMessageAtOrAfterATime) {
 }
 
 TEST_F(McapTest, MessagesOutsideChunksAreRead) {
-  Bytes bytes(kMagic.begin(), kMagic.end());
-  Append(Header{}, bytes);
+  Bytes bytes = Beginning();
   Append(Schema{.id = 1, .name = "Note", .encoding = "protobuf", .data = ""}, bytes);
   Append(Channel{.id = 7, .schema_id = 1, .topic = "/note", .message_encoding = "", .metadata = {}},
          bytes);
@@ -121,13 +120,9 @@ TEST_F(McapTest, F47UnknownRecordsAndProfilesAreIgnored) {
   Bytes bytes(kMagic.begin(), kMagic.end());
   Append(Header{.profile = "x-of-the-future", .library = ""}, bytes);
   AppendUnknownRecord(bytes);
-  Append(ChunkHeader{.start = 5,
-                     .end = 5,
-                     .uncompressed_size = records.size(),
-                     .uncompressed_crc = 0,
-                     .compression = "",
-                     .compressed_size = records.size()},
-         records, bytes);
+  ChunkHeader header = HeaderOf(records);
+  header.start = header.end = 5;
+  Append(header, records, bytes);
   AppendUnknownRecord(bytes);
   const auto contents = Read(bytes);
   ASSERT_TRUE(contents);
@@ -159,32 +154,24 @@ TEST_F(McapTest, OtherFilesAreRefusedInWords) {
 }
 
 TEST_F(McapTest, UnsupportedCompressionIsRefusedWhenTheFileIsOpened) {
-  Bytes bytes(kMagic.begin(), kMagic.end());
-  Append(Header{}, bytes);
+  Bytes bytes = Beginning();
   const Bytes records(10, 1);
-  Append(ChunkHeader{.start = 0,
-                     .end = 0,
-                     .uncompressed_size = 50,
-                     .uncompressed_crc = 0,
-                     .compression = "lz4",
-                     .compressed_size = records.size()},
-         records, bytes);
+  ChunkHeader header = HeaderOf(records);
+  header.uncompressed_size = 50;
+  header.compression = "lz4";
+  Append(header, records, bytes);
   const Status status = OpenStatus(bytes);
   EXPECT_EQ(status.code(), StatusCode::kFailedPrecondition);
   EXPECT_THAT(status.message(), HasSubstr("lz4"));
 }
 
 TEST_F(McapTest, ChunkThatClaimsTooMuchIsRefusedBeforeAllocating) {
-  Bytes bytes(kMagic.begin(), kMagic.end());
-  Append(Header{}, bytes);
+  Bytes bytes = Beginning();
   const Bytes records(10, 1);
-  Append(ChunkHeader{.start = 0,
-                     .end = 0,
-                     .uncompressed_size = 1ULL << 60,
-                     .uncompressed_crc = 0,
-                     .compression = "zstd",
-                     .compressed_size = records.size()},
-         records, bytes);
+  ChunkHeader header = HeaderOf(records);
+  header.uncompressed_size = 1ULL << 60;
+  header.compression = "zstd";
+  Append(header, records, bytes);
   const auto contents = Read(bytes);
   ASSERT_TRUE(contents);
   EXPECT_TRUE(contents->notes.empty());
@@ -194,15 +181,8 @@ TEST_F(McapTest, ChunkThatClaimsTooMuchIsRefusedBeforeAllocating) {
 TEST_F(McapTest, F65AChunkOfTooManyMessagesIsRefused) {
   Bytes records;
   for (std::size_t i = 0; i <= kMaxChunkMessages; ++i) Append(Message{}, records);
-  Bytes bytes(kMagic.begin(), kMagic.end());
-  Append(Header{}, bytes);
-  Append(ChunkHeader{.start = 0,
-                     .end = 0,
-                     .uncompressed_size = records.size(),
-                     .uncompressed_crc = 0,
-                     .compression = "",
-                     .compressed_size = records.size()},
-         records, bytes);
+  Bytes bytes = Beginning();
+  Append(HeaderOf(records), records, bytes);
   const auto contents = Read(bytes);
   ASSERT_TRUE(contents);
   EXPECT_TRUE(contents->notes.empty());
@@ -212,8 +192,7 @@ TEST_F(McapTest, F65AChunkOfTooManyMessagesIsRefused) {
 TEST_F(McapTest, F65DefinitionsAndMetadataBeyondTheirLimitsAreLeftOut) {
   constexpr std::size_t kEachBytes = 900'000;
   const std::string text(kEachBytes, 'x');
-  Bytes bytes(kMagic.begin(), kMagic.end());
-  Append(Header{}, bytes);
+  Bytes bytes = Beginning();
   for (SchemaId id = 1; id <= 20; ++id)
     Append(Schema{.id = id, .name = "s", .encoding = "", .data = text}, bytes);
   for (int i = 0; i < 6; ++i) Append(Metadata{.name = "m", .values = {{"k", text}}}, bytes);
@@ -224,8 +203,7 @@ TEST_F(McapTest, F65DefinitionsAndMetadataBeyondTheirLimitsAreLeftOut) {
 }
 
 TEST_F(McapTest, F65MetadataThatASummaryListsOftenIsReadOnce) {
-  Bytes bytes(kMagic.begin(), kMagic.end());
-  Append(Header{}, bytes);
+  Bytes bytes = Beginning();
   const std::uint64_t offset = bytes.size();
   Append(Metadata{.name = "m", .values = {{"k", std::string(1'000'000, 'x')}}}, bytes);
   const std::uint64_t length = bytes.size() - offset;

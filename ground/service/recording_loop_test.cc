@@ -96,8 +96,8 @@ class RecordingLoopTest : public ::testing::Test {
   ScanBoard board_;
   ThreadProgress progress_;
   RecordingQueue queue_{{.items = 1000, .bytes = 1U << 30}};
-  std::vector<Nanoseconds>
-      at_it_;  ///< At each look at the disk, a minute later; not while it runs.
+  /// At each look at the disk, a minute later; not while it runs.
+  std::vector<Nanoseconds> at_it_;
   RecordingLoop loop_{options_, clock_, board_, progress_, [this](const std::filesystem::path&) {
                         at_it_.push_back(progress_.AtItFor(clock_.SteadyNow() + 60s));
                         return std::filesystem::space_info{.capacity = 4 * kFreeBytes,

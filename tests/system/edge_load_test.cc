@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -297,11 +296,10 @@ class EdgeLoadTest : public ::testing::Test {
         ticks.push_back(thermal->frame.header.device_ticks);
     }
     if (ticks.empty()) return 0;
-    const std::chrono::microseconds period =
-        sensor == Sensor::kDepth ? kDepthPeriod : std::chrono::microseconds(kThermalPeriod);
-    return static_cast<std::uint64_t>(
-               std::lround(ToSeconds(ticks.back() - ticks.front()) / ToSeconds(period))) +
-           1;
+    const Nanoseconds period =
+        sensor == Sensor::kDepth ? Nanoseconds(kDepthPeriod) : kThermalPeriod;
+    const double periods = ToSeconds(ticks.back() - ticks.front()) / ToSeconds(period);
+    return static_cast<std::uint64_t>(std::lround(periods)) + 1;
   }
 
   /// Whatever the computer did meanwhile: each frame that was due is captured, or counted as lost.

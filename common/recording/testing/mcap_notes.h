@@ -42,6 +42,19 @@ class McapTest : public ::testing::Test {
     return std::move(*writer);
   }
 
+  /// Returns the beginning of a file.
+  static Bytes Beginning() {
+    Bytes bytes(kMagic.begin(), kMagic.end());
+    Append(Header{}, bytes);
+    return bytes;
+  }
+  /// Returns what stands before `records` in a chunk that is not compressed.
+  static ChunkHeader HeaderOf(const Bytes& records) {
+    ChunkHeader header;
+    header.uncompressed_size = header.compressed_size = records.size();
+    return header;
+  }
+
   /// One message per time; those that share a chunk are at most 100 ns apart.
   void WriteFile(const std::vector<std::uint64_t>& times, bool close = true) {
     auto writer = MakeWriter();

@@ -6,12 +6,13 @@
 #include <isotherm_frames.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <thread>
 #include <vector>
@@ -24,6 +25,7 @@ namespace isotherm {
 namespace {
 
 constexpr int kRepeats = 3;
+constexpr char kName[] = "test-edge";
 // Without the limits of the shipped profiles.
 constexpr const char* kProfile =
     "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
@@ -60,7 +62,7 @@ class RawWriter {
 /// Sends what an edge says before it sends frames of a session.
 void Announce(const RawWriter& writer, std::uint64_t session) {
   isotherm_wire_Rig rig{};
-  std::strcpy(rig.edge_id, "test-edge");
+  std::copy(std::begin(kName), std::end(kName), rig.edge_id);
   rig.session = session;
   rig.mark = kWireMark;
   writer.Write(&rig);
@@ -71,7 +73,7 @@ void Announce(const RawWriter& writer, std::uint64_t session) {
 template <typename Sample>
 Sample GoodSample(std::vector<std::uint8_t>* payload) {
   Sample sample{};
-  std::strcpy(sample.edge_id, "test-edge");
+  std::copy(std::begin(kName), std::end(kName), sample.edge_id);
   sample.stamp.session = 1;
   sample.mark = kWireMark;
   sample.image.width = 64;
@@ -92,10 +94,15 @@ void Say(const char* line) {
   std::fflush(stdout);
 }
 
-void AwaitSignal() {
+sigset_t AwaitedSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGUSR1);
+  return signals;
+}
+
+void AwaitSignal() {
+  const sigset_t signals = AwaitedSignals();
   int caught = 0;
   CHECK(sigwait(&signals, &caught) == 0);
 }
@@ -164,9 +171,7 @@ void SendThermal(const RawWriter& writer) {
 
 int Main(int domain) {
   setenv("CYCLONEDDS_URI", kProfile, /*overwrite=*/1);
-  sigset_t awaited;
-  sigemptyset(&awaited);
-  sigaddset(&awaited, SIGUSR1);
+  const sigset_t awaited = AwaitedSignals();
   CHECK(pthread_sigmask(SIG_BLOCK, &awaited, nullptr) == 0);
   const SystemClock clock{};
   const TransportEnvironment environment(clock);
