@@ -2,49 +2,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 /// Raw bits, lowest first.
 namespace isotherm::codec {
-
-/// Keeps its memory. Thread-compatible.
-class BitWriter {
- public:
-  /// Starts over; at most `max_values` values will be put.
-  void Reset(std::size_t max_values) {
-    bytes_.resize(max_values * 2 + sizeof(pending_));
-    next_ = bytes_.data();
-    pending_ = 0;
-    pending_bits_ = 0;
-  }
-
-  /// `value` must be below 2^count, `count` at most 16.
-  void Put(std::uint32_t value, unsigned count) {
-    pending_ |= static_cast<std::uint64_t>(value) << pending_bits_;
-    pending_bits_ += count;
-    if (pending_bits_ < 32) return;
-    PutBytes(4);
-    pending_ >>= 32;
-    pending_bits_ -= 32;
-  }
-
-  /// Writes what is pending; nothing may be put afterwards.
-  std::span<const std::uint8_t> Finish() {
-    PutBytes((pending_bits_ + 7) / 8);
-    pending_bits_ = 0;
-    return {bytes_.data(), next_};
-  }
-
- private:
-  void PutBytes(unsigned count) {
-    for (unsigned i = 0; i < count; ++i) *next_++ = static_cast<std::uint8_t>(pending_ >> (8 * i));
-  }
-
-  std::vector<std::uint8_t> bytes_;
-  std::uint8_t* next_ = nullptr;
-  std::uint64_t pending_ = 0;
-  unsigned pending_bits_ = 0;
-};
 
 /// Behind its end everything reads as zero and ok() is false. Thread-compatible.
 class BitReader {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "common/codec/halves_decoders.h"
 #include "common/codec/image_codecs.h"
 #include "common/png/png.h"
 
@@ -38,6 +39,12 @@ Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
   return OkStatus();
 }
 
+template <typename Decoder>
+Status DecodeWith(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image) {
+  thread_local Decoder decoder;
+  return decoder.Decode(payload, image);
+}
+
 Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
   switch (encoded.encoding) {
     case Encoding::kRaw16:
@@ -46,16 +53,17 @@ Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
       return DecodeRaw(encoded.payload, image);
     case Encoding::kPng16:
       return DecodeGrey16Png(encoded.payload, image);
-    case Encoding::kDepthRans: {
-      // Its tables are large: they are kept for each thread that decodes.
-      thread_local codec::DepthCodec decoder;
-      return decoder.Decode(encoded.payload, image);
-    }
+    // Their tables are large: they are kept for each thread that decodes.
+    case Encoding::kDepthRans:
+      return DecodeWith<codec::DepthHalvesDecoder>(encoded.payload, image);
     case Encoding::kThermalRans:
-    case Encoding::kScaledThermalRans: {
-      thread_local codec::ThermalCodec decoder;
-      return decoder.Decode(encoded.payload, image);
-    }
+    case Encoding::kScaledThermalRans:
+      return DecodeWith<codec::ThermalHalvesDecoder>(encoded.payload, image);
+    case Encoding::kDepthStrips:
+      return DecodeWith<codec::DepthCodec>(encoded.payload, image);
+    case Encoding::kThermalStrips:
+    case Encoding::kScaledThermalStrips:
+      return DecodeWith<codec::ThermalCodec>(encoded.payload, image);
   }
   return DataLoss(
       fmt::format("encoding {} is unknown: update Isotherm", static_cast<int>(encoded.encoding)));
@@ -76,11 +84,11 @@ ThermalEncoder::ThermalEncoder() : scratch_(std::make_unique<Scratch>()) {}
 ThermalEncoder::~ThermalEncoder() = default;
 
 Encoding TemperatureEncoding(const RadiometricScale& scale) {
-  return scale == kCentikelvin ? Encoding::kThermalRans : Encoding::kScaledThermalRans;
+  return scale == kCentikelvin ? Encoding::kThermalStrips : Encoding::kScaledThermalStrips;
 }
 
 EncodedImage DepthEncoder::Encode(const Image<std::uint16_t>& depth_raw) {
-  EncodedImage encoded{.encoding = Encoding::kDepthRans,
+  EncodedImage encoded{.encoding = Encoding::kDepthStrips,
                        .width = depth_raw.width(),
                        .height = depth_raw.height(),
                        .payload = {}};

@@ -86,8 +86,8 @@ std::vector<NamedImage> Images() {
 }
 
 EncodedImage EncodeWith(Encoding encoding, const Pixels& image) {
-  return encoding == Encoding::kDepthRans ? DepthEncoder().Encode(image)
-                                          : ThermalEncoder().Encode(image, kCentikelvin);
+  return encoding == Encoding::kDepthStrips ? DepthEncoder().Encode(image)
+                                            : ThermalEncoder().Encode(image, kCentikelvin);
 }
 
 class CodecTest : public ::testing::TestWithParam<Encoding> {};
@@ -122,7 +122,7 @@ TEST_P(CodecTest, AnEncoderForgetsTheImageBefore) {
   DepthEncoder depth;
   ThermalEncoder thermal;
   for (const NamedImage& named : Images()) {
-    const EncodedImage again = GetParam() == Encoding::kDepthRans
+    const EncodedImage again = GetParam() == Encoding::kDepthStrips
                                    ? depth.Encode(named.image)
                                    : thermal.Encode(named.image, kCentikelvin);
     EXPECT_EQ(again.payload, EncodeWith(GetParam(), named.image).payload) << named.name;
@@ -154,7 +154,7 @@ TEST_P(CodecTest, AnotherSizeIsAnError) {
 /// Decodes a payload behind which no memory can be read.
 Status DecodeGuarded(Encoding encoding, const std::vector<std::uint8_t>& payload, Pixels& image) {
   const testing::GuardedBuffer guarded{std::span<const std::uint8_t>(payload)};
-  if (encoding == Encoding::kDepthRans) return codec::DepthCodec().Decode(guarded.bytes(), image);
+  if (encoding == Encoding::kDepthStrips) return codec::DepthCodec().Decode(guarded.bytes(), image);
   return codec::ThermalCodec().Decode(guarded.bytes(), image);
 }
 
@@ -199,9 +199,9 @@ TEST_P(CodecTest, F65GarbageIsRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, CodecTest,
-                         ::testing::Values(Encoding::kDepthRans, Encoding::kThermalRans),
+                         ::testing::Values(Encoding::kDepthStrips, Encoding::kThermalStrips),
                          [](const auto& test) {
-                           return test.param == Encoding::kDepthRans ? "Depth" : "Thermal";
+                           return test.param == Encoding::kDepthStrips ? "Depth" : "Thermal";
                          });
 
 TEST(DecodeTest, ImpossibleSizesAreRefusedBeforeAllocating) {
@@ -213,7 +213,7 @@ TEST(DecodeTest, ImpossibleSizesAreRefusedBeforeAllocating) {
                                       {2'000'000'000, 2'000'000'000},
                                       {4097, 4096}}) {
     for (const Encoding encoding :
-         {Encoding::kRaw16, Encoding::kPng16, Encoding::kDepthRans, Encoding::kThermalRans}) {
+         {Encoding::kRaw16, Encoding::kPng16, Encoding::kDepthStrips, Encoding::kThermalStrips}) {
       const EncodedImage image{
           .encoding = encoding, .width = width, .height = height, .payload = {1, 2, 3}};
       const Result<Pixels> decoded = Decode(image);
@@ -274,13 +274,13 @@ TEST(DecodeTest, CountsAreUnpackedButAreNoTemperatures) {
 
 TEST(DecodeTest, AnotherScaleThanCentikelvinHasAnEncodingOfItsOwn) {
   Image<std::uint16_t> raw(3, 2, 56'157);
-  EXPECT_EQ(ThermalEncoder().Encode(raw, kCentikelvin).encoding, Encoding::kThermalRans);
+  EXPECT_EQ(ThermalEncoder().Encode(raw, kCentikelvin).encoding, Encoding::kThermalStrips);
   EXPECT_EQ(ThermalEncoder().Encode(raw, RadiometricScale{0.01, 0.0}).encoding,
-            Encoding::kThermalRans);
+            Encoding::kThermalStrips);
   for (const RadiometricScale& scale :
        {RadiometricScale{0.02, 0.0}, RadiometricScale{0.01, 100.0}}) {
     const EncodedImage encoded = ThermalEncoder().Encode(raw, scale);
-    EXPECT_EQ(encoded.encoding, Encoding::kScaledThermalRans);
+    EXPECT_EQ(encoded.encoding, Encoding::kScaledThermalStrips);
     EXPECT_EQ(*DecodeTemperatures(encoded), raw);
   }
   EncodedImage plain = PackCounts(raw);

@@ -11,9 +11,7 @@
 /// The codes behind codec.h, each without its envelope.
 namespace isotherm::codec {
 
-/// Depth. Its values are few (a camera that measures disparity can tell only some 300 depths
-/// between 0.4 and 1.4 m apart), so pixels become their rank among the values that occur. Keeps its
-/// memory. Thread-compatible.
+/// Depth, whose values are few (DepthValues). Keeps its memory. Thread-compatible.
 class DepthCodec {
  public:
   DepthCodec();

@@ -6,12 +6,9 @@
 
 namespace isotherm::codec {
 
-/// An image is coded as two strips, upper and lower half, that do not depend on each other, so that
-/// a processor can work on two pixels at once.
-inline constexpr int kStrips = 2;
-
-/// Image with one column of padding on either side: cells 0 and width + 1 of each row. A row of
-/// zeros stands above each strip. Keeps its memory. Thread-compatible.
+/// Image with one column of padding on either side: cells 0 and width + 1 of each row. It has an
+/// upper and a lower half that do not depend on each other; a row of zeros stands above each. Keeps
+/// its memory. Thread-compatible.
 class PaddedImage {
  public:
   void Reset(int width, int height) {
@@ -22,8 +19,8 @@ class PaddedImage {
   }
   int width() const { return width_; }
   int height() const { return height_; }
-  int FirstRow(int strip) const { return strip == 0 ? 0 : (height_ + 1) / kStrips; }
-  int EndRow(int strip) const { return strip == 0 ? FirstRow(1) : height_; }
+  int FirstRow(int half) const { return half == 0 ? 0 : (height_ + 1) / 2; }
+  int EndRow(int half) const { return half == 0 ? FirstRow(1) : height_; }
 
   std::uint16_t* Row(int y) { return cells_.data() + (static_cast<std::size_t>(y) + 1) * stride(); }
   /// The row that predicts row `y`.

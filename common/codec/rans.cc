@@ -47,16 +47,4 @@ bool GetFrequencies(PayloadReader& in, std::span<std::uint16_t> frequencies) {
   return sum == kScale || *used == 0;
 }
 
-void MakeEncodeSymbols(std::span<const std::uint16_t> frequencies,
-                       std::span<EncodeSymbol> symbols) {
-  std::uint32_t start = 0;
-  for (std::size_t i = 0; i < frequencies.size(); ++i) {
-    const std::uint32_t frequency = frequencies[i];
-    symbols[i] = {.reciprocal = 0, .frequency = frequency, .start = start};
-    if (frequency == 0) continue;
-    symbols[i].reciprocal = ((std::uint64_t{1} << kReciprocalBits) + frequency - 1) / frequency;
-    start += frequency;
-  }
-}
-
 }  // namespace isotherm::codec

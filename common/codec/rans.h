@@ -26,47 +26,6 @@ void PutFrequencies(std::span<const std::uint16_t> frequencies, std::vector<std:
 /// False unless they add up to kScale or are all zero.
 bool GetFrequencies(PayloadReader& in, std::span<std::uint16_t> frequencies);
 
-/// Holds what the encoder needs to know about a symbol.
-struct EncodeSymbol {
-  /// ceil(2^kReciprocalBits / frequency): for a state x < 2^(32 - kScaleBits) * frequency, x *
-  /// reciprocal stays below 2^64 and (x * reciprocal) >> kReciprocalBits is exactly x / frequency.
-  std::uint64_t reciprocal = 0;
-  std::uint32_t frequency = 0;
-  std::uint32_t start = 0;
-};
-inline constexpr unsigned kReciprocalBits = 32 + kScaleBits;
-
-void MakeEncodeSymbols(std::span<const std::uint16_t> frequencies, std::span<EncodeSymbol> symbols);
-
-/// Encodes backwards: the last symbol first. Thread-compatible.
-class RansEncoder {
- public:
-  /// Words are written backwards from `end`; one more than is used may be overwritten.
-  explicit RansEncoder(std::uint16_t* end) : next_(end) {}
-
-  void Put(const EncodeSymbol& symbol) {
-    // Without a branch, which a processor could not predict: a word is due at irregular places.
-    const bool full = state_ >= static_cast<std::uint64_t>(symbol.frequency) << (32 - kScaleBits);
-    next_[-1] = static_cast<std::uint16_t>(state_);
-    next_ -= full ? 1 : 0;
-    state_ = full ? state_ >> 16 : state_;
-    const auto quotient =
-        static_cast<std::uint32_t>((state_ * symbol.reciprocal) >> kReciprocalBits);
-    state_ += quotient * (kScale - symbol.frequency) + symbol.start;
-  }
-
-  /// The first of the words, two of which are the state.
-  const std::uint16_t* Finish() {
-    *--next_ = static_cast<std::uint16_t>(state_);
-    *--next_ = static_cast<std::uint16_t>(state_ >> 16);
-    return next_;
-  }
-
- private:
-  std::uint64_t state_ = kMinState;
-  std::uint16_t* next_;
-};
-
 /// Holds what the decoder needs to know about the contexts' symbols: first the symbol of a slot,
 /// then its place. Two small tables stay in the first-level cache where one large one would not.
 /// Symbols are below kMaxSymbols.

@@ -26,9 +26,8 @@ struct Token {
   int raw_bits = 0;  ///< How many of the lowest bits follow.
 };
 
-/// Returns the token of a value. It has no branches or tables, so that it becomes vector
-/// instructions: the exponent and the two leading bits of the mantissa of a float are just what a
-/// token is made of.
+/// Returns the token of a value: the exponent and the two leading bits of the mantissa of a float
+/// are just what a token is made of.
 constexpr Token TokenOf(int value) {
   constexpr int kMantissaBits = 23;
   constexpr int kBias = 127;
@@ -70,14 +69,8 @@ constexpr bool RangesAreThoseOfTokens() {
 }
 static_assert(RangesAreThoseOfTokens());
 
-/// Returns the number of bits of `value`, which must be below 2^22, for one pixel after the other.
+/// Returns the number of bits of `value`, which must be below 2^31.
 constexpr int BitWidth(int value) {
   return static_cast<int>(std::bit_width(static_cast<unsigned>(value) << 1 | 1U)) - 1;
 }
-/// Returns the same without the instruction that counts bits, so that many values fit into a
-/// vector.
-constexpr int BitWidthForVectors(int value) {
-  return (std::bit_cast<int>(static_cast<float>(value << 1 | 1)) >> 23) - 127;
-}
-
 }  // namespace isotherm::codec

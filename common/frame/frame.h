@@ -117,11 +117,14 @@ struct RawFrame {
 
 /// The ways to pack an image. Values are on the wire and in recordings: never reuse one.
 enum class Encoding : std::uint8_t {
-  kRaw16 = 0,      ///< Little-endian 16-bit samples, row-major.
-  kPng16 = 1,      ///< PNG, 16-bit grey.
-  kDepthRans = 2,  ///< Ranks of the values that occur, predicted, entropy coded (common/codec).
-  kThermalRans =
-      3,  ///< Values predicted by the median edge detector, entropy coded (common/codec).
+  kRaw16 = 0,  ///< Little-endian 16-bit samples, row-major.
+  kPng16 = 1,  ///< PNG, 16-bit grey.
+  /// Ranks of the values that occur, predicted, entropy coded in two halves (common/codec). Read,
+  /// no longer written.
+  kDepthRans = 2,
+  /// Values predicted by the median edge detector, entropy coded in two halves. Read, no longer
+  /// written.
+  kThermalRans = 3,
   /// As kRaw16, of a camera that measures no temperatures: its counts. A value of its own, so that
   /// nobody takes counts for centi-kelvin; programs that do not know it refuse the frame.
   kCounts16 = 4,
@@ -129,11 +132,16 @@ enum class Encoding : std::uint8_t {
   /// values of their own for the same reason.
   kScaledThermalRans = 5,
   kScaledRaw16 = 6,
+  /// As kDepthRans, kThermalRans and kScaledThermalRans, in strips (common/codec).
+  kDepthStrips = 7,
+  kThermalStrips = 8,
+  kScaledThermalStrips = 9,
 };
-inline constexpr Encoding kLastEncoding = Encoding::kScaledRaw16;
+inline constexpr Encoding kLastEncoding = Encoding::kScaledThermalStrips;
 
 constexpr bool IsScaled(Encoding encoding) {
-  return encoding == Encoding::kScaledThermalRans || encoding == Encoding::kScaledRaw16;
+  return encoding == Encoding::kScaledThermalRans || encoding == Encoding::kScaledRaw16 ||
+         encoding == Encoding::kScaledThermalStrips;
 }
 
 constexpr bool IsRaw(Encoding encoding) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMinMove_m = 0.03;
 constexpr double kMinRotation_deg = 5.0;
 
-void Append(std::string part, std::string& text) {
+void Append(const std::string& part, std::string& text) {
   if (!text.empty()) text += ", ";
   text += part;
 }

@@ -22,8 +22,8 @@ namespace isotherm {
 
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
 /// Major: they do not and say so (CheckCompatible()); the topics have other names (qos.cc).
-inline constexpr std::uint16_t kWireMajor = 2;
-inline constexpr std::uint16_t kWireMinor = 5;
+inline constexpr std::uint16_t kWireMajor = 3;
+inline constexpr std::uint16_t kWireMinor = 0;
 
 /// Ends each sample (idl/isotherm_frames.idl). Not 0, which is what a missing member reads as.
 inline constexpr std::uint8_t kWireMark = 0xA5;
@@ -241,7 +241,8 @@ struct Command {
   double hold_s = 0.0;                                  ///< For kHoldNuc; 0 ends a hold.
 };
 
-/// Says what became of a command: kRefused was not tried, kFailed was.
+/// Says what became of a command. What is kRefused was not done; what is kFailed was tried, and may
+/// still be done where a camera only did not answer.
 enum class CommandOutcome : std::uint8_t { kDone = 0, kRefused = 1, kFailed = 2 };
 
 /// Answers the command of the same number.

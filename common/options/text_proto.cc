@@ -33,7 +33,9 @@ constexpr std::size_t kMaxRepairBytes = 4U << 20;
 struct Location {
   int line = 0;  // From 0, as protobuf counts.
   int column = 0;
-  friend auto operator<=>(const Location&, const Location&) = default;
+  // Clang-tidy 14 takes its result for a pointer.
+  friend auto operator<=>(const Location&,
+                          const Location&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 struct TextError {

@@ -129,7 +129,7 @@ void Definitions::Add(const RecordWalker::Record& record) {
   }
 }
 
-void Definitions::Merge(Definitions other) {
+void Definitions::Merge(Definitions&& other) {
   for (auto& [id, schema] : other.schemas) AddNew(std::move(schema));
   for (auto& [id, channel] : other.channels) AddNew(std::move(channel));
 }

@@ -58,7 +58,7 @@ class Definitions {
   /// Adds the record if it is a schema or a channel within the limits.
   void Add(const RecordWalker::Record& record);
   /// Adds what `other` has and this has not, if that stays within the limits.
-  void Merge(Definitions other);
+  void Merge(Definitions&& other);
 
  private:
   void AddNew(Schema schema);

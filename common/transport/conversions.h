@@ -14,7 +14,7 @@ namespace isotherm {
 void ToWire(const EncodedDepthFrame& from, isotherm_wire_DepthFrame* to);
 void ToWire(const EncodedThermalFrame& from, isotherm_wire_ThermalFrame* to);
 void ToWire(const RigDescription& from, isotherm_wire_Rig* to);
-void ToWire(const ExternalOdometrySample& from, isotherm_wire_OutsidePose* to);
+void ToWire(const ExternalOdometrySample& from, isotherm_wire_ExternalOdometry* to);
 void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to);
 void ToWire(const Command& from, isotherm_wire_Command* to);
 void ToWire(const CommandResult& from, isotherm_wire_CommandResult* to);
@@ -28,7 +28,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_DepthFrame& from, Encod
 std::optional<RefusalCause> FromWire(const isotherm_wire_ThermalFrame& from,
                                      EncodedThermalFrame* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to);
-std::optional<RefusalCause> FromWire(const isotherm_wire_OutsidePose& from,
+std::optional<RefusalCause> FromWire(const isotherm_wire_ExternalOdometry& from,
                                      ExternalOdometrySample* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Command& from, Command* to);

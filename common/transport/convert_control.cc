@@ -94,7 +94,7 @@ std::optional<RefusalCause> FromWireLists(const isotherm_wire_Feedback& from, Fe
         {.stage = ReadText(latency.stage), .p50_s = latency.p50_s, .p99_s = latency.p99_s});
   }
   // The wire keeps its old word until its next major version (see docs/subscribing.md).
-  const auto image = Elements(from.picture);
+  const auto image = Elements(from.confidence_image);
   to->image.assign(image.begin(), image.end());
   return std::nullopt;
 }
@@ -174,8 +174,9 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
                  [](Advice value) { return static_cast<std::uint8_t>(value); });
   // An image that is cut is no image.
   if (from.image.size() <= kMaxConfidenceImageBytes) {
-    std::ranges::copy(from.image,
-                      Allocate(&to->picture, from.image.size(), kMaxConfidenceImageBytes).begin());
+    std::ranges::copy(
+        from.image,
+        Allocate(&to->confidence_image, from.image.size(), kMaxConfidenceImageBytes).begin());
   }
   const auto latencies = Allocate(&to->latencies, from.latencies.size(), kMaxStageLatencies);
   for (std::size_t i = 0; i < latencies.size(); ++i) {

@@ -120,11 +120,14 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_ThermalFrame& from,
   to->housekeeping = {.fpa_celsius = from.fpa_celsius,
                       .housing_celsius = from.housing_celsius,
                       .shutter_celsius = from.shutter_celsius};
+  to->image.encoding =
+      static_cast<Encoding>(from.image.encoding);  // Says whether there is a scale.
+  if (const auto bad_scale = FromWireScale(from, to)) return bad_scale;
   to->image = CopyImage(from.image);
-  return FromWireScale(from, to);
+  return std::nullopt;
 }
 
-void ToWire(const ExternalOdometrySample& from, isotherm_wire_OutsidePose* to) {
+void ToWire(const ExternalOdometrySample& from, isotherm_wire_ExternalOdometry* to) {
   const ExternalOdometry& pose = from.pose;
   to->session = from.session;
   to->sample_number = from.number;
@@ -144,7 +147,7 @@ void ToWire(const ExternalOdometrySample& from, isotherm_wire_OutsidePose* to) {
   to->rotation_sigma_rad = pose.rotation_sigma_rad;
 }
 
-std::optional<RefusalCause> FromWire(const isotherm_wire_OutsidePose& from,
+std::optional<RefusalCause> FromWire(const isotherm_wire_ExternalOdometry& from,
                                      ExternalOdometrySample* to) {
   if (from.capture_time_ns < 0 || from.capture_sigma_ns < 0) return RefusalCause::kNegativeTime;
   if (from.sample_number > kMaxFrameNumber) return RefusalCause::kImpossibleNumber;

@@ -39,7 +39,7 @@ const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
     case TopicId::kHello:
       return &isotherm_wire_Hello_desc;
     case TopicId::kExternalOdometry:
-      return &isotherm_wire_OutsidePose_desc;
+      return &isotherm_wire_ExternalOdometry_desc;
   }
   return nullptr;
 }

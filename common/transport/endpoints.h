@@ -51,8 +51,8 @@ struct Received {
   std::uint64_t writer = 0;  ///< The writer that it came from, for Reader::PeerOf.
 };
 
-/// Reads one topic. What cannot be right is refused before anything is allocated for it, and
-/// counted. Thread-bound to the thread that takes, except matched_writers().
+/// Reads one topic. What cannot be right is refused before it is unpacked, and counted; what the
+/// middleware holds of it is bounded by its type. Thread-bound to the thread that takes.
 template <typename Message>
 class Reader {
  public:

@@ -34,19 +34,19 @@ constexpr dds_duration_t kLease = DDS_SECS(1);
 
 // The major version is in the names, so that what a peer of another one sends is not even
 // delivered. The hello has none, and its type is frozen: it is how they tell each other.
-static_assert(kWireMajor == 2);
+static_assert(kWireMajor == 3);
 constexpr std::array<Profile, 10> kProfiles = {{
-    {"isotherm/2/depth", kFrameHistory, true, kFrameBlocking, kLease},
-    {"isotherm/2/thermal", kFrameHistory, true, kFrameBlocking, kLease},
-    {"isotherm/2/rig", 1, true, kSmallBlocking, kLease},
-    {"isotherm/2/edge_status", 1, true, kSmallBlocking, kLease},
+    {"isotherm/3/depth", kFrameHistory, true, kFrameBlocking, kLease},
+    {"isotherm/3/thermal", kFrameHistory, true, kFrameBlocking, kLease},
+    {"isotherm/3/rig", 1, true, kSmallBlocking, kLease},
+    {"isotherm/3/edge_status", 1, true, kSmallBlocking, kLease},
     // No order may be overwritten by the next one, and none may reach an edge that starts later.
-    {"isotherm/2/command", 16, false, kSmallBlocking, kLease},
-    {"isotherm/2/command_result", 16, false, kSmallBlocking, kLease},
-    {"isotherm/2/receipt", 1, false, kSmallBlocking, kLease},
-    {"isotherm/2/feedback", 1, false, kSmallBlocking, kLease},
+    {"isotherm/3/command", 16, false, kSmallBlocking, kLease},
+    {"isotherm/3/command_result", 16, false, kSmallBlocking, kLease},
+    {"isotherm/3/receipt", 1, false, kSmallBlocking, kLease},
+    {"isotherm/3/feedback", 1, false, kSmallBlocking, kLease},
     {"isotherm/hello", 1, true, kSmallBlocking, kLease},
-    {"isotherm/2/outside_pose", kExternalOdometryHistory, true, kSmallBlocking, kLease},
+    {"isotherm/3/external_odometry", kExternalOdometryHistory, true, kSmallBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }

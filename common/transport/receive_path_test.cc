@@ -136,7 +136,7 @@ template <typename Frame>
 bool IsFrame(const Frame& frame) {
   const EncodedImage& image = frame.image;
   return image.width > 0 && image.height > 0 && image.width <= 16384 && image.height <= 16384 &&
-         std::int64_t{image.width} * image.height <= 4'194'304 && IsOneOf(image.encoding, 7) &&
+         std::int64_t{image.width} * image.height <= 4'194'304 && IsOneOf(image.encoding, 10) &&
          !image.payload.empty() && image.payload.size() <= 8'388'608 &&
          ToNanoseconds(frame.header.capture_time) >= 0 && frame.header.capture_sigma.count() >= 0;
 }
@@ -150,7 +150,7 @@ bool IsSound(const EncodedThermalFrame& frame) {
 bool IsSound(const RigDescription& rig) {
   const bool modes = rig.depth.width >= 0 && rig.thermal.height >= 0 &&
                      std::int64_t{rig.depth.width} * rig.depth.height <= 4'194'304 &&
-                     IsOneOf(rig.depth.encoding, 7) && IsOneOf(rig.thermal.encoding, 7);
+                     IsOneOf(rig.depth.encoding, 10) && IsOneOf(rig.thermal.encoding, 10);
   return modes && IsSound(rig.rig.thermal_scale) && IsShort(rig.rig.serial, 256) &&
          IsShort(rig.thermal.model, 256) &&
          (!rig.rig.depth || (rig.rig.depth->width > 0 && std::isfinite(rig.rig.depth->fx)));
@@ -323,7 +323,7 @@ TEST_F(ReceivePathTest, F60AnyBytesAsAThermalFrame) {
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsARig) { Run<RigDescription>(isotherm_wire_Rig_desc); }
 TEST_F(ReceivePathTest, F60AnyBytesAsExternalOdometry) {
-  Run<ExternalOdometrySample>(isotherm_wire_OutsidePose_desc);
+  Run<ExternalOdometrySample>(isotherm_wire_ExternalOdometry_desc);
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsAStatus) { Run<EdgeStatus>(isotherm_wire_EdgeStatus_desc); }
 TEST_F(ReceivePathTest, F60AnyBytesAsACommand) { Run<Command>(isotherm_wire_Command_desc); }

@@ -7,7 +7,7 @@
 // Generated from idl/; complete only in the .cc files of this folder.
 struct isotherm_wire_DepthFrame;
 struct isotherm_wire_ThermalFrame;
-struct isotherm_wire_OutsidePose;
+struct isotherm_wire_ExternalOdometry;
 struct isotherm_wire_Rig;
 struct isotherm_wire_EdgeStatus;
 struct isotherm_wire_Command;
@@ -52,7 +52,7 @@ struct TopicOf<RigDescription> {
 };
 template <>
 struct TopicOf<ExternalOdometrySample> {
-  using Wire = ::isotherm_wire_OutsidePose;
+  using Wire = ::isotherm_wire_ExternalOdometry;
   static constexpr TopicId kId = TopicId::kExternalOdometry;
 };
 template <>

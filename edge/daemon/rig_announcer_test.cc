@@ -53,7 +53,7 @@ TEST_F(RigAnnouncerTest, WhatWasThereAtTheStartIsNotAnnouncedAgain) {
 }
 
 TEST_F(RigAnnouncerTest, ACameraThatComesLateIsAnnouncedAndRecordedOnceWithItsOwnScale) {
-  EXPECT_EQ(DescribeRig(options_, start_).thermal.encoding, Encoding::kThermalRans)
+  EXPECT_EQ(DescribeRig(options_, start_).thermal.encoding, Encoding::kThermalStrips)
       << "at the start nothing but the calibration is known";
   RigAnnouncer announcer = Make();
   FakeClock clock;
@@ -74,7 +74,7 @@ TEST_F(RigAnnouncerTest, ACameraThatComesLateIsAnnouncedAndRecordedOnceWithItsOw
   ASSERT_EQ(publisher_.announced().size(), 1U);
   const RigDescription announced = publisher_.announced()[0];
   EXPECT_EQ(announced.rig.thermal_scale, kHotScale);
-  EXPECT_EQ(announced.thermal.encoding, Encoding::kScaledThermalRans);
+  EXPECT_EQ(announced.thermal.encoding, Encoding::kScaledThermalStrips);
   EXPECT_EQ(announced.thermal.serial, "T1");
   EXPECT_EQ(announced.depth.serial, "D1") << "and what was known stays";
   EXPECT_EQ(announced.session, start_.session());

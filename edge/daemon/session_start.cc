@@ -33,7 +33,7 @@ std::string ModelText(const CameraDescription& camera) {
 }
 
 Encoding EncodingOf(const CameraDescription& camera) {
-  if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
+  if (camera.sensor == Sensor::kDepth) return Encoding::kDepthStrips;
   return camera.counts_only ? Encoding::kCounts16 : TemperatureEncoding(camera.thermal_scale);
 }
 
@@ -67,7 +67,7 @@ RigDescription DescribeRig(const EdgeOptions& options, const EdgeSession& start)
     if (camera) stream = {camera->width, camera->height, 0.0, encoding, "", ""};
     return stream;
   };
-  description.depth = mode(description.rig.depth, Encoding::kDepthRans);
+  description.depth = mode(description.rig.depth, Encoding::kDepthStrips);
   description.thermal =
       mode(description.rig.thermal, TemperatureEncoding(description.rig.thermal_scale));
   for (const CameraDescription& camera : start.cameras) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -59,12 +60,12 @@ std::string LevelName(LogLevel level) {
   return "error";
 }
 
-/// A source that knows no such command is not a failure of the camera.
-CommandOutcome OutcomeOf(const Status& status) {
-  if (status.ok()) return CommandOutcome::kDone;
-  const bool failed =
-      status.code() == StatusCode::kIoError || status.code() == StatusCode::kInternal;
-  return failed ? CommandOutcome::kFailed : CommandOutcome::kRefused;
+/// Says what became of an order that the camera had: one that it does not take is refused, and so
+/// is what it was never told.
+CommandOutcome OutcomeOfOrder(const Status& answer) {
+  if (answer.ok()) return CommandOutcome::kDone;
+  return answer.code() == StatusCode::kFailedPrecondition ? CommandOutcome::kRefused
+                                                          : CommandOutcome::kFailed;
 }
 
 }  // namespace
@@ -76,10 +77,9 @@ NucControl::NucControl(const EdgeOptions& options, FrameSource& source)
       patience_(FromSeconds(options.nuc().expert().answer_s())) {}
 
 NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
-  // Answers first: they are to orders of earlier frames, and may withdraw what this frame would
-  // wait for.
+  // Answers first: one to an earlier order may end a wait that this frame would go on with.
   TakeCameraAnswers();
-  CheckPatience(time);
+  GiveUpIfUnanswered(time);
   NucObservation seen;
   seen.time = time;
   seen.shutter_closed = frame.shutter_closed;
@@ -89,12 +89,12 @@ NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
                             (frame.camera_nuc && frame.camera_nuc->state == NucState::kInProgress);
   seen.image = images_.Add(frame.pixels, frame.thermal_scale, time, known_closed);
   status_ = supervisor_.Update(seen);
-  if (status_.order) Pass(*status_.order, time);
+  if (status_.order) GiveOrder(*status_.order, time);
   LogNotices();
   return status_;
 }
 
-void NucControl::Pass(NucOrder order, CaptureTime time) {
+void NucControl::GiveOrder(NucOrder order, CaptureTime time) {
   if (order == NucOrder::kTrigger) triggered_at_ = time;
   const std::optional<Status> answer = source_.Control(ToControl(order));
   if (answer) OnCameraAnswer(order, *answer);
@@ -117,7 +117,7 @@ void NucControl::TakeCameraAnswers() {
   LogNotices();
 }
 
-void NucControl::CheckPatience(CaptureTime time) {
+void NucControl::GiveUpIfUnanswered(CaptureTime time) {
   if (!triggered_at_ || time - *triggered_at_ < patience_) return;
   // The answer may still come; it is then skipped above.
   ++answers_too_late_;
@@ -131,7 +131,8 @@ void NucControl::OnCameraAnswer(NucOrder order, const Status& answer) {
   if (order != NucOrder::kTrigger) return;
   triggered_at_.reset();
   for (const std::uint64_t number : std::exchange(waiting_, {})) {
-    Answer(number, answer, answer.ok() ? "the camera has the order" : answer.message());
+    Answer(number, OutcomeOfOrder(answer),
+           answer.ok() ? "the camera has the order" : answer.message());
   }
 }
 
@@ -140,7 +141,7 @@ void NucControl::Execute(const Command& command) {
   switch (command.kind) {
     case CommandKind::kTriggerNuc:
       done = supervisor_.Request();
-      // Only when the camera has answered is known how it takes the order.
+      // How the camera takes the order is known only when it has answered.
       if (done && done->empty()) return waiting_.push_back(command.number);
       break;
     case CommandKind::kHoldNuc:
@@ -153,16 +154,17 @@ void NucControl::Execute(const Command& command) {
       done = Err(InvalidArgument("not a command about the NUC"));
   }
   LogNotices();
-  Answer(command.number, done ? OkStatus() : done.error(), done ? *done : done.error().message());
+  Answer(command.number, done ? CommandOutcome::kDone : CommandOutcome::kRefused,
+         done ? *done : done.error().message());
 }
 
 void NucControl::End() {
   for (const std::uint64_t number : std::exchange(waiting_, {}))
-    Answer(number, Unavailable(""), "the source has ended");
+    Answer(number, CommandOutcome::kFailed, "the source has ended");
 }
 
-void NucControl::Answer(std::uint64_t number, const Status& status, std::string text) {
-  answers_.push_back({number, OutcomeOf(status), std::move(text)});
+void NucControl::Answer(std::uint64_t number, CommandOutcome outcome, std::string text) {
+  answers_.push_back({number, outcome, std::move(text)});
 }
 
 void NucControl::LogNotices() {

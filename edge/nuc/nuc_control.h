@@ -35,17 +35,17 @@ class NucControl {
   /// Since the last call.
   std::vector<CommandResult> TakeAnswers() { return std::exchange(answers_, {}); }
   std::vector<RecordedLog> TakeLog() { return std::exchange(log_, {}); }
-  /// The source has ended: commands that wait for a frame are refused.
+  /// The source has ended: commands that wait for the camera's answer have failed.
   void End();
 
   NucReport Report() const;
 
  private:
-  void Pass(NucOrder order, CaptureTime time);
+  void GiveOrder(NucOrder order, CaptureTime time);
   void OnCameraAnswer(NucOrder order, const Status& answer);
   /// The camera is taken to refuse an order that it has not answered at `time`, in time.
-  void CheckPatience(CaptureTime time);
-  void Answer(std::uint64_t number, const Status& status, std::string text);
+  void GiveUpIfUnanswered(CaptureTime time);
+  void Answer(std::uint64_t number, CommandOutcome outcome, std::string text);
   void LogNotices();
 
   FrameSource& source_;

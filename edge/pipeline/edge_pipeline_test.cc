@@ -182,7 +182,7 @@ TEST_F(EdgePipelineTest, TemperaturesArePublishedInTheScaleOfTheCamera) {
   const std::vector<EncodedThermalFrame> published = publisher_.thermal();
   ASSERT_EQ(published.size(), 2U);
   for (const EncodedThermalFrame& frame : published) {
-    EXPECT_EQ(frame.image.encoding, Encoding::kScaledThermalRans);
+    EXPECT_EQ(frame.image.encoding, Encoding::kScaledThermalStrips);
     EXPECT_EQ(frame.scale, thermal_scale_);
     const Result<Image<std::uint16_t>> pixels = DecodeTemperatures(frame.image);
     ASSERT_TRUE(pixels.has_value());

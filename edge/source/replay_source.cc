@@ -95,8 +95,7 @@ Result<std::optional<ReplaySource::PlayedItem>> ReplaySource::NextItem() {
       }
       continue;
     }
-    if (auto* depth = std::get_if<RecordedDepth>(&**item))
-      return PlayedItem(ToRawFrame(std::move(*depth)));
+    if (auto* depth = std::get_if<RecordedDepth>(&**item)) return PlayedItem(ToRawFrame(*depth));
     auto* thermal = std::get_if<RecordedThermal>(&**item);
     if (thermal != nullptr && thermal->frame.image.encoding == Encoding::kCounts16) {
       if (counts_left_out_++ == 0) {
@@ -106,7 +105,7 @@ Result<std::optional<ReplaySource::PlayedItem>> ReplaySource::NextItem() {
       }
       continue;
     }
-    if (thermal != nullptr) return PlayedItem(ToRawFrame(std::move(*thermal)));
+    if (thermal != nullptr) return PlayedItem(ToRawFrame(*thermal));
     if (auto* pose = std::get_if<ExternalOdometry>(&**item)) return PlayedItem(std::move(*pose));
     if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
   }
@@ -128,14 +127,14 @@ bool ReplaySource::IsInTime(const RecordedItem& item) const {
          (*time - *first_arrival_ <= kMaxScan && *first_arrival_ - *time <= kMaxScan);
 }
 
-RawFrame ReplaySource::ToRawFrame(RecordedDepth recorded) {
+RawFrame ReplaySource::ToRawFrame(const RecordedDepth& recorded) {
   RawFrame frame =
       Prepare(Sensor::kDepth, recorded.frame.header, recorded.frame.image, recorded.arrival);
   frame.depth_scale = recorded.frame.depth_scale;
   return frame;
 }
 
-RawFrame ReplaySource::ToRawFrame(RecordedThermal recorded) {
+RawFrame ReplaySource::ToRawFrame(const RecordedThermal& recorded) {
   const EncodedThermalFrame& thermal = recorded.frame;
   RawFrame frame = Prepare(Sensor::kThermal, thermal.header, thermal.image, recorded.arrival);
   frame.thermal_scale = thermal.scale;

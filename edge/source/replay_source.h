@@ -46,8 +46,8 @@ class ReplaySource final : public FrameSource {
   Result<std::optional<PlayedItem>> NextItem();
   /// Returns whether the item belongs to the same scan as the first one, by its time.
   bool IsInTime(const RecordedItem& item) const;
-  RawFrame ToRawFrame(RecordedDepth recorded);
-  RawFrame ToRawFrame(RecordedThermal recorded);
+  RawFrame ToRawFrame(const RecordedDepth& recorded);
+  RawFrame ToRawFrame(const RecordedThermal& recorded);
   RawFrame Prepare(Sensor sensor, const FrameHeader& header, const EncodedImage& image,
                    const std::optional<CaptureTime>& arrival);
   bool StartNextLoop();

@@ -218,6 +218,8 @@ class UsbDevice::Impl {
         code, fmt::format("choosing alternate setting {} of interface {}", alternate, interface));
   }
 
+  // Named as members of UsbDevice, whose they are.
+  // NOLINTBEGIN(readability-identifier-naming)
   Context context_;
   const Clock& clock_;
   Handle handle_;
@@ -230,6 +232,7 @@ class UsbDevice::Impl {
   bool high_speed_ = false;
   std::vector<int> claimed_;
   std::unique_ptr<LibusbStream> stream_;
+  // NOLINTEND(readability-identifier-naming)
 };
 
 Result<std::unique_ptr<UsbDevice>> UsbDevice::Open(const std::string& bus_port,

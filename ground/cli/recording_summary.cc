@@ -67,6 +67,12 @@ std::string EncodingName(Encoding encoding) {
       return "scaled thermal-rans";
     case Encoding::kScaledRaw16:
       return "scaled raw";
+    case Encoding::kDepthStrips:
+      return "depth-strips";
+    case Encoding::kThermalStrips:
+      return "thermal-strips";
+    case Encoding::kScaledThermalStrips:
+      return "scaled thermal-strips";
   }
   return fmt::format("unknown ({})", static_cast<int>(encoding));
 }

@@ -14,22 +14,22 @@ namespace isotherm {
 namespace {
 
 /// Coverage of the view is assessed by this many pixels per row at least, whatever the image's
-/// size, so that its fractions mean the same without an image. More: more time per message, a tenth
-/// of a percent finer.
+/// size, so that its fractions mean the same without an image. More: more time per message; fewer:
+/// a fraction jumps by more than the 0.01 % that one of them is. Not tuned.
 constexpr int kMinColumns = 160;
 
-/// The rig is on the way to the next view while it comes nearer at this fraction of a walking pace,
+/// The rig is on the way to the next view while it comes nearer at this fraction of a scan's pace,
 /// and for kTurnRound_s after it did: to come to rest, or to turn round when it is sent elsewhere.
-/// Meanwhile smear is no reason to say "slower". With it a guided scan was told "slower" for 14
-/// instead of 21 % of its time (docs/experiments.md). Smaller: who strays slowly counts as on the
-/// way.
+/// Meanwhile smear is no reason to say "slower". Smaller: who strays slowly counts as on the way;
+/// larger: who goes there slowly is told to go slower still. Not measured by itself.
 constexpr double kMinPace = 0.25;
 constexpr double kTurnRound_s = 0.6;
-/// Nearer than this, in seconds of walking (7 cm, 4 degrees), it is there.
+/// Nearer than this, in seconds at that pace (7 cm, 4 degrees), the rig is there. Not tuned.
 constexpr double kThere_s = 0.25;
 
 /// Once parts of the model are on the disk, only blocks within this distance of the rig are
-/// counted: those are in memory. Larger: counting reads from the disk.
+/// counted: of those hardly any was out of view for so long that it is on the disk. Larger:
+/// counting reads from the disk.
 constexpr double kResidentReach_m = 1.0;
 
 std::vector<Advice> ToWire(AdviceKind kind) {
@@ -94,7 +94,7 @@ void Thin(const SurfaceMaps& maps, int stride, SurfaceMaps& thin) {
   copy(maps.nz, thin.nz);
 }
 
-/// A pose that was chosen, not measured, in `world`; nullopt while its sub-map is not joined.
+/// A pose of which only the place counts, in `world`; nullopt while its sub-map is not joined.
 std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
                                       const RigidTransform& T_map_depth) {
   const std::optional<WorldPose> pose = atlas.ToWorld({.map = map, .T_map_depth = T_map_depth});
@@ -102,15 +102,16 @@ std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
   return pose->T_world_depth;
 }
 
-/// Returns where tracking worked before `now`, in `world`; nullopt if that is not known. It is the
-/// last pose at first; who was not found there is sent back along the way they came.
-std::optional<RigidTransform> LastKnownPose(const ScanModel& scan, CaptureTime now) {
+/// Returns where tracking worked, in `world`, for a rig that is lost for so long; nullopt if that
+/// is not known. It is the last pose at first; who was not found there is sent back along the way
+/// they came.
+std::optional<RigidTransform> LastKnownPose(const ScanModel& scan, Nanoseconds lost_for) {
   // Most losses end at the last pose within this time (a hand before the camera, a swing back).
   // Then the way back is shown as fast as it was gone.
   constexpr Nanoseconds kStay = std::chrono::seconds(2);
   const std::vector<StampedPose>& poses = scan.trajectory.poses();
   if (!poses.empty()) {
-    const Nanoseconds back = std::max(Nanoseconds(0), now - poses.back().time - kStay);
+    const Nanoseconds back = std::max(Nanoseconds(0), lost_for - kStay);
     auto pose = std::ranges::lower_bound(poses, poses.back().time - back, {}, &StampedPose::time);
     return pose->T_world_depth;
   }
@@ -242,7 +243,7 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
 void FeedbackMaker::AddNextPose(const DepthReport& report, const ScanModel& scan,
                                 Feedback& feedback) const {
   if (!report.tracked) {
-    feedback.T_world_depth_next = LastKnownPose(scan, feedback.capture_time);
+    feedback.T_world_depth_next = LastKnownPose(scan, feedback.capture_time - last_tracked_);
     return;
   }
   const auto planner = planners_.find(report.pose.map);
@@ -261,6 +262,8 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   feedback.frame_number = moment.header.frame_number;
   feedback.capture_time = moment.header.capture_time;
   feedback.tracking_state = StateOf(moment.report);
+  // A rig that was never tracked is lost from its first frame on.
+  if (moment.report.tracked || messages_ == 1) last_tracked_ = moment.header.capture_time;
   if (const auto pose =
           moment.report.tracked ? scan.atlas.ToWorld(moment.report.pose) : std::nullopt) {
     feedback.T_world_depth = pose->T_world_depth;
@@ -287,8 +290,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
 
 void FeedbackMaker::ThinkAhead(const ScanModel& scan) {
   ModelCoverage& coverage = ActiveCoverage(scan);
-  // Looking at blocks that were given back would bring them back from the disk: those near the rig
-  // are in memory.
+  // Looking at blocks that are on the disk would bring them back: those near the rig hardly are.
   const bool has_spilled = scan.spiller.spilled() > 0;
   const VoxelGrid& grid = scan.tsdf().grid();
   const Eigen::Vector3d rig_vox = grid.ToVoxel(scan.view.T_map_depth.translation());

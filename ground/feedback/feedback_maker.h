@@ -78,7 +78,8 @@ class FeedbackMaker {
   std::optional<double> way_s_;
   std::optional<CaptureTime> way_noted_at_, on_the_way_until_;
   bool is_on_the_way_ = false;
-  bool is_measuring_ = false;  ///< With the last message: views can be gone to and measured.
+  bool is_measuring_ = false;   ///< With the last message: views can be gone to and measured.
+  CaptureTime last_tracked_{};  ///< With the last message, in whatever sub-map.
   std::uint64_t messages_ = 0;
 };
 

@@ -110,6 +110,23 @@ TEST_F(FeedbackMakerTest, ASubMapThatIsNotJoinedYetHasNeitherPoseNorUncertaintyI
   EXPECT_FALSE(feedback.pose_covariance.has_value()) << "nobody could tell whose axes are meant";
 }
 
+TEST_F(FeedbackMakerTest, LostInASubMapThatIsNotJoinedTheWayBackBeginsAtTheLastPoseInWorld) {
+  Feedback last;
+  for (int i = 0; i < 6; ++i) {
+    beside_m_ = 0.003 * i;
+    last = Show();
+  }
+  for (int i = 0; i < 5; ++i) ShowNothing();
+  Show(90.0);
+  frame_ += 30 * 60;  // A minute there.
+  ASSERT_EQ(Show(90.0).tracking_state, TrackingState::kTracked);
+  ASSERT_FALSE(pipeline_->model().atlas.active().joined);
+  const Feedback lost = ShowNothing();
+  ASSERT_EQ(lost.tracking_state, TrackingState::kLost);
+  ASSERT_TRUE(lost.T_world_depth_next && last.T_world_depth);
+  EXPECT_TRUE(lost.T_world_depth_next->isApprox(*last.T_world_depth, 1e-9));
+}
+
 TEST_F(FeedbackMakerTest, InARotatedSubMapPoseAndUncertaintyAreBothInWorld) {
   // The same view from a scan that was never lost, whose sub-map is `world`.
   Feedback expected;

@@ -47,15 +47,15 @@ MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_map_de
       const Eigen::Vector3d n_current =
           T_map_depth.linear() * At(current.nx, current.ny, current.nz, x, y);
       if (!(n.dot(n_current) > double{limits.min_normal_cosine})) continue;
-      Vector6 model_J;
+      Vector6 model_jacobian;
       // One factor has the model's normal, the other the frame's. Both have noise, but not the
       // same: products average it out, where squares would add it to every direction, and a noisy
       // plane would look structured (ADR 7).
-      model_J << n, arm.cross(n);
-      Vector6 current_J;
-      current_J << n_current, arm.cross(n_current);
+      model_jacobian << n, arm.cross(n);
+      Vector6 current_jacobian;
+      current_jacobian << n_current, arm.cross(n_current);
       const double weight = std::pow(kIcpReferenceDepth / p_depth.z(), 4);
-      sums.H.noalias() += (weight * model_J) * current_J.transpose();
+      sums.H.noalias() += (weight * model_jacobian) * current_jacobian.transpose();
       sums.weight += weight;
       sums.depth += weight * p_depth.z();
       ++sums.count;

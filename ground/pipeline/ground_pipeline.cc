@@ -81,8 +81,8 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
 }
 
 void GroundPipeline::WarmUp() {
-  // Memory is handed out page by page when it is first written: 10 MB of images took 55 ms of a
-  // virtual computer, 1.6 ms from the second frame on. A live scan's first frames would wait.
+  // Memory is handed out page by page when it is first written: on a virtual computer the first
+  // frame took 55 ms here, later ones 1.6 ms. A live scan's first frames would wait.
   DepthFrame nothing;
   nothing.depth_raw = Image<std::uint16_t>(rig_.depth->width, rig_.depth->height, kNoDepth);
   preprocessor_.Process(nothing, pool_);
@@ -243,7 +243,7 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
   SubMap& map = atlas_.active();
   integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
   // Temperatures lie beside the distances block by block, so they grow with them.
-  has_room_ = map.thermal->Commit(map.tsdf->block_count());
+  thermal_has_room_ = map.thermal->Commit(map.tsdf->block_count());
   ++map.integrated;
   if (map.anchors.empty()) map.anchors.push_back(T_map_depth);
   spiller_.Touch(integrator_.updated_blocks());
@@ -254,17 +254,16 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
                          "the view goes to "
                       << options_.volume().spill_dir();
   }
-  if (spiller_.spilled() > 0) FetchNearView(T_map_depth);
+  if (spiller_.spilled() > 0) ReadAheadAround(T_map_depth);
   return map.tsdf->block_count() > 0;
 }
 
-void GroundPipeline::FetchNearView(const RigidTransform& T_map_depth) {
+void GroundPipeline::ReadAheadAround(const RigidTransform& T_map_depth) {
   // Looking up the blocks costs as much as a cast's bounds. Five frames of motion are within what
   // the wider view below covers.
   constexpr std::uint64_t kEvery = 5;
   if (counts_.depth_in % kEvery != 0) return;
-  // As if the camera saw half as much again on each side: some ten frames ahead at the speed at
-  // which frames are integrated.
+  // As if the camera saw half as much again on each side. Not tuned.
   constexpr double kZoom = 0.5;
   CameraModel camera = tracker_.view().camera;
   camera.fx *= kZoom;
@@ -312,7 +311,7 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
 
 std::optional<LeftOutReason> GroundPipeline::WhyNoThermal() const {
   if (load_shedding_ >= LoadShedding::kNoThermal) return LeftOutReason::kBehind;
-  if (!has_room_) return LeftOutReason::kDiskFull;
+  if (!thermal_has_room_) return LeftOutReason::kDiskFull;
   return std::nullopt;
 }
 
@@ -337,7 +336,7 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
 }
 
 void GroundPipeline::Finish(const std::function<void(double)>& progress) {
-  // Temperatures of the last frames are reviewed in the merged model.
+  // All temperatures are reviewed, in the merged model.
   if (atlas_.size() > 1) MergeMaps(progress);
   if (thermal_stage_) {
     const SubMap& map = atlas_.active();

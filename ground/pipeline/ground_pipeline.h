@@ -97,7 +97,7 @@ class GroundPipeline {
   /// False if the model is still empty: nothing of the surface lies in the volume.
   bool AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth);
   /// Has what was spilled and comes into view read in the background.
-  void FetchNearView(const RigidTransform& T_map_depth);
+  void ReadAheadAround(const RigidTransform& T_map_depth);
   /// Returns why no thermal frame can be fused now, if so.
   std::optional<LeftOutReason> WhyNoThermal() const;
   void RaycastFrom(const RigidTransform& T_map_depth);
@@ -136,7 +136,7 @@ class GroundPipeline {
   std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
   RepeatDetector repeats_;        ///< Among depth frames.
   std::vector<PoseCertainty> certainties_;  ///< One for each tracked frame, in order of time.
-  bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
+  bool thermal_has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   LoadShedding load_shedding_ = LoadShedding::kNone;
   bool integrate_next_ = true;                 ///< With kEverySecond.
   std::optional<ThermalStage> thermal_stage_;  ///< Only if the rig's thermal frames can be fused.

@@ -123,7 +123,8 @@ void StreamReceiver<ReceivedFrame>::Accept(ReceivedFrame&& item, const FrameMark
   if (!newest_ || mark.number > newest_->number) newest_ = mark;
   if (sequencer_->Add(mark.number, std::move(item), mark.arrival) != ArrivalOrder::kLate) return;
   ++tally_.late;
-  if (deliver_late_) deliver_late_(std::move(item));  // Add has left it where it was.
+  // Add has left it where it was.
+  if (deliver_late_) deliver_late_(std::move(item));  // NOLINT(bugprone-use-after-move)
 }
 
 template <typename ReceivedFrame>

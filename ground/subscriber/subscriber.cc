@@ -130,8 +130,8 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
                handlers_.late_thermal),
       gate_(
           [this](RigSample&& sample) {
-            std::visit([&](auto&& message) { OnAdmitted(std::move(message), sample.arrival); },
-                       std::move(sample.content));
+            std::visit([&](auto& message) { OnAdmitted(std::move(message), sample.arrival); },
+                       sample.content);
           },
           [this](const RigSample& sample, RefusalCause cause) { refusals_.Add(sample, cause); }),
       sessions_(options.end_grace),

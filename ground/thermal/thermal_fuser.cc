@@ -28,7 +28,7 @@ CameraModel EverySecondPixel(CameraModel camera) {
 
 /// A temperature is known where its pixel is to about half a pixel: interpolation between pixels
 /// and what a lens spreads. Smaller: steep pixels beside edges get through; larger: more of the
-/// surface has no temperature.
+/// surface has no temperature. Not tuned.
 constexpr double kPixelUncertainty_px = 0.5;
 /// A block in view is reviewed once in this many frames, at 40 Hz more than twice a second. More
 /// often: time for surface that has hardly changed; less often: what a better surface proves wrong
@@ -38,8 +38,8 @@ constexpr std::uint32_t kFramesBetweenReviews = 16;
 /// Stands for no limit; its square is finite.
 constexpr float kNoLimit = 1e18F;
 
-/// How far from the image's middle the row of `camera` is that sees normalised row `y` of the ideal
-/// camera, above or below its principal point.
+/// For the row of `camera`'s image that sees normalised row `y` of the ideal camera, above or below
+/// its principal point: how many rows it is from the middle one.
 double RowsFromMiddle(const CameraModel& camera, double y) {
   const double middle = 0.5 * (camera.height - 1);
   return std::min(std::abs(ProjectNormalized(camera, {0.0, y}).y() - middle), middle);
@@ -143,7 +143,7 @@ void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVo
   }
   UpsampleRowArgs args{};
   args.coarse = &coarse_;
-  // Half of what counts as an occluder: a corner is bridged, an edge is not.
+  // Half of what counts as an occluder: a corner is bridged, an edge is not. Not tuned.
   args.max_plane_distance_m =
       static_cast<float>(0.5 * options_.expert().occlusion().parallax_tolerance_m());
   const Eigen::Vector3f position = T_map_thermal.translation().cast<float>();

@@ -10,12 +10,12 @@
 namespace isotherm {
 
 Tracker::Tracker(const GroundOptions& options, const CameraModel& depth_camera,
-                 std::optional<RigidTransform> initial_pose, Atlas& atlas)
+                 const std::optional<RigidTransform>& initial_pose, Atlas& atlas)
     : options_(options.submaps()),
       initial_pose_(initial_pose),
       atlas_(atlas),
-      rig_(options, depth_camera),
-      loop_closer_(options, atlas_, rig_) {}
+      rig_tracker_(options, depth_camera),
+      loop_closer_(options, atlas_, rig_tracker_) {}
 
 RigidTransform Tracker::FirstPose(const PreparedDepth& depth) const {
   // Only the scan's first sub-map can begin at a given pose; a later one begins wherever the rig
@@ -44,12 +44,12 @@ TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, Thread
       is_first = BeginElsewhere(depth, time);
     }
   }
-  if (is_first) frame.tracking = rig_.Begin(depth, time, FirstPose(depth));
+  if (is_first) frame.tracking = rig_tracker_.Begin(depth, time, FirstPose(depth));
   frame.switched = atlas_.active_index() != map_before;
   if (!frame.tracking.tracked()) {
     // The place was not confirmed, so the poses on the way there were wrong, too.
     unconfirmed_.clear();
-  } else if (rig_.state() == RigTracker::State::kConfirming) {
+  } else if (rig_tracker_.state() == RigTracker::State::kConfirming) {
     unconfirmed_.push_back({time, frame.tracking.T_map_depth});
     frame.outcome = Outcome::kUnconfirmed;
   } else {
@@ -62,13 +62,14 @@ TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, Thread
 
 TrackingResult Tracker::TrackInModel(const PreparedDepth& depth, CaptureTime time,
                                      ThreadPool& pool) {
-  const bool lost = rig_.state() == RigTracker::State::kLost;
+  const bool lost = rig_tracker_.state() == RigTracker::State::kLost;
   const StageTimer timer(lost ? times_.relocalise : times_.track);
   // A rig is most often found where it was lost: that map is searched first, then all in turn, one
   // a frame, so that a lost frame costs the same however many maps there are.
   if (!lost) searched_ = atlas_.active_index();
-  TrackingResult result = rig_.Track(depth, time, atlas_.active(), atlas_.map(searched_), pool);
-  if (rig_.found_elsewhere()) {
+  TrackingResult result =
+      rig_tracker_.Track(depth, time, atlas_.active(), atlas_.map(searched_), pool);
+  if (rig_tracker_.found_elsewhere()) {
     atlas_.Activate(searched_);
   } else if (lost) {
     searched_ = (searched_ + 1) % atlas_.size();
@@ -107,7 +108,7 @@ void Tracker::Accept(const TrackedFrame& frame) {
 void Tracker::Reject() {
   CHECK(pending_ == Pending::kDecision);
   pending_ = Pending::kNothing;
-  rig_.Forget();
+  rig_tracker_.Forget();
 }
 
 bool Tracker::CloseLoops(const TrackedFrame& frame, const PreparedDepth& depth,
@@ -128,13 +129,13 @@ void Tracker::LookFrom(const RigidTransform& T_map_depth, bool is_young, ThreadP
   CHECK(pending_ != Pending::kDecision);
   pending_ = Pending::kNothing;
   const StageTimer timer(times_.raycast);
-  rig_.LookFrom(T_map_depth, *atlas_.active().tsdf, is_young, pool);
+  rig_tracker_.LookFrom(T_map_depth, *atlas_.active().tsdf, is_young, pool);
 }
 
 void Tracker::Rebase(const RigidTransform& T_new_old) {
   CHECK(pending_ == Pending::kNothing);
   pending_ = Pending::kView;
-  rig_.Rebase(T_new_old);
+  rig_tracker_.Rebase(T_new_old);
 }
 
 MapPose Tracker::pose() const {

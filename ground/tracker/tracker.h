@@ -54,6 +54,7 @@ struct TrackerTimes {
 ///   Track -> Reject                                  a first frame that left no surface
 ///   Track -> LookFrom                                a pose that is not believed yet
 ///   Track                                            a rig that is lost
+///   [Rebase ->] LookFrom                             when maps are merged
 ///
 /// Thread-bound.
 class Tracker {
@@ -61,19 +62,19 @@ class Tracker {
   /// `initial_pose` is T_world_depth of the first frame; without one the volume's centre is put on
   /// its optical axis at its median depth. `atlas` must outlive the tracker.
   Tracker(const GroundOptions& options, const CameraModel& depth_camera,
-          std::optional<RigidTransform> initial_pose, Atlas& atlas);
+          const std::optional<RigidTransform>& initial_pose, Atlas& atlas);
   /// From now on, temperatures help where the geometry does not suffice.
   void UseThermal(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth) {
-    rig_.UseThermal(thermal_camera, T_thermal_depth);
+    rig_tracker_.UseThermal(thermal_camera, T_thermal_depth);
   }
   /// Begins as lost, in an active sub-map that has a surface already: the rig is anywhere near its
   /// known views.
-  void BeginLost() { rig_.BeginLost(); }
+  void BeginLost() { rig_tracker_.BeginLost(); }
 
   /// A valid thermal frame of the camera's size, before the first depth frame after it.
-  void AddThermal(ThermalFramePtr frame) { rig_.AddThermal(std::move(frame)); }
-  /// In order of capture time, ideally before the first depth frame that is not older.
-  void AddExternalOdometry(const ExternalOdometry& pose) { rig_.AddExternalOdometry(pose); }
+  void AddThermal(ThermalFramePtr frame) { rig_tracker_.AddThermal(std::move(frame)); }
+  /// In order of capture time, best before the depth frame that follows it.
+  void AddExternalOdometry(const ExternalOdometry& pose) { rig_tracker_.AddExternalOdometry(pose); }
 
   /// Finds the pose of the next frame.
   TrackedFrame Track(const PreparedDepth& depth, CaptureTime time, ThreadPool& pool);
@@ -89,19 +90,19 @@ class Tracker {
   /// Casts the active sub-map from a pose: what the next frame is tracked against. `is_young`: it
   /// is little more than one frame's noise.
   void LookFrom(const RigidTransform& T_map_depth, bool is_young, ThreadPool& pool);
-  /// Goes on in other coordinates, seen from there by LookFrom.
+  /// Goes on in other coordinates; LookFrom must be called next.
   void Rebase(const RigidTransform& T_new_old);
 
   /// The newest pose, in the active sub-map. Only while the motion is known.
   MapPose pose() const;
-  const ModelView& view() const { return rig_.view(); }
+  const ModelView& view() const { return rig_tracker_.view(); }
   /// The last poses, in the active sub-map; none while the rig is lost.
-  const MotionHistory& motion() const { return rig_.motion(); }
-  const PoseUncertainty& uncertainty() const { return rig_.uncertainty(); }
-  const OdometryPrior& external_odometry() const { return rig_.external_odometry(); }
+  const MotionHistory& motion() const { return rig_tracker_.motion(); }
+  const PoseUncertainty& uncertainty() const { return rig_tracker_.uncertainty(); }
+  const OdometryPrior& external_odometry() const { return rig_tracker_.external_odometry(); }
   const Trajectory& trajectory() const { return trajectory_; }
   /// Returns how often the rig was found again.
-  std::uint64_t relocalisations() const { return rig_.relocalisations(); }
+  std::uint64_t relocalisations() const { return rig_tracker_.relocalisations(); }
   const TrackerTimes& times() const { return times_; }
 
  private:
@@ -114,7 +115,7 @@ class Tracker {
   const SubMapOptions options_;
   const std::optional<RigidTransform> initial_pose_;
   Atlas& atlas_;
-  RigTracker rig_;
+  RigTracker rig_tracker_;
   LoopCloser loop_closer_;
   Trajectory trajectory_;
   TrackerTimes times_;

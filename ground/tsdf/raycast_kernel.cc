@@ -250,27 +250,31 @@ HWY_INLINE void WriteSurface(const RaycastKernelArgs& a, const Rays& rays, const
 // there to the zero of the trilinearly interpolated distance by Newton steps; its gradient is the
 // normal. A change from negative to positive ends the ray: what is met from behind hides the rest.
 // Rows: lanes are 4 columns by n rows of pixels, whose rays stay close and read the same blocks.
-// Fast: steps are long in free space; the table's border and block -1 spare all bounds checks; two
+// Fast: steps are long in free space; the table's border and block -1 spare all bounds checks; four
 // bundles wait for memory together.
 void RaycastTile(const RaycastKernelArgs& a, int tile_x, int tile_y, float near_vox, float far_vox,
                  SurfaceMaps& maps) {
-  const int width = maps.width();
-  const int height = maps.height();
+  constexpr int kColumns = kRaycastTile / kLaneColumns;  // Of bundles.
   const int lane_rows = static_cast<int>(hn::Lanes(d)) / kLaneColumns;
-  for (int y = tile_y; y < tile_y + kRaycastTile && y < height; y += lane_rows) {
-    // Marching waits for memory most of the time: two bundles side by side wait together.
-    for (int x = tile_x; x < tile_x + kRaycastTile && x < width; x += 2 * kLaneColumns) {
-      const Bundle left(a, x, y, width, height, near_vox, far_vox);
-      const Bundle right(a, x + kLaneColumns, y, width, height, near_vox, far_vox);
-      March left_march(a, left.rays, left.start, left.end);
-      March right_march(a, right.rays, right.start, right.end);
-      while (!left_march.done() || !right_march.done()) {
-        left_march.Step(a);
-        right_march.Step(a);
-      }
-      WriteSurface(a, left.rays, Refine(a, left, left_march.crossing()), x, y, maps);
-      if (x + kLaneColumns >= width) break;
-      WriteSurface(a, right.rays, Refine(a, right, right_march.crossing()), x + kLaneColumns, y,
+  const int bundles = kColumns * (kRaycastTile / lane_rows);
+  for (int first = 0; first < bundles; first += 4) {
+    const auto x = [&](int i) { return tile_x + (first + i) % kColumns * kLaneColumns; };
+    const auto y = [&](int i) { return tile_y + (first + i) / kColumns * lane_rows; };
+    const auto bundle = [&](int i) {
+      return Bundle(a, x(i), y(i), maps.width(), maps.height(), near_vox, far_vox);
+    };
+    // Marching waits for memory most of the time: bundles side by side wait together.
+    const Bundle bundle_of[] = {bundle(0), bundle(1), bundle(2), bundle(3)};
+    const auto march = [&](int i) {
+      return March(a, bundle_of[i].rays, bundle_of[i].start, bundle_of[i].end);
+    };
+    March marches[] = {march(0), march(1), march(2), march(3)};
+    while (!marches[0].done() || !marches[1].done() || !marches[2].done() || !marches[3].done()) {
+      for (March& one : marches) one.Step(a);
+    }
+    for (int i = 0; i < 4; ++i) {
+      if (x(i) >= maps.width() || y(i) >= maps.height()) continue;
+      WriteSurface(a, bundle_of[i].rays, Refine(a, bundle_of[i], marches[i].crossing()), x(i), y(i),
                    maps);
     }
   }

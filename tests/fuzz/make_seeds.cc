@@ -75,7 +75,7 @@ void WriteCodecSeeds(const fs::path& root) {
   write("thermal", ThermalEncoder().Encode(image, kCentikelvin));
   constexpr RadiometricScale kHot{.kelvin_per_count = 0.02};
   const EncodedImage scaled = ThermalEncoder().Encode(image, kHot);
-  CHECK(scaled.encoding == Encoding::kScaledThermalRans);
+  CHECK(scaled.encoding == Encoding::kScaledThermalStrips);
   write("thermal-scaled", scaled);
   EncodedImage scaled_raw = PackCounts(image);  // The same bytes under another name.
   scaled_raw.encoding = Encoding::kScaledRaw16;

@@ -51,7 +51,7 @@ const FolderArrows& Arrows() {
       {"common/messages",
        {"common/base", "common/time", "common/geometry", "common/frame", "common/rig"}},
       {"common/png", {"common/base", "common/frame"}},
-      {"common/codec", {"common/base", "common/frame", "common/png"}},
+      {"common/codec", {"common/base", "common/simd", "common/frame", "common/png"}},
       {"common/recording",
        {"common/base", "common/time", "common/geometry", "common/frame", "common/messages",
         "common/codec", "common/rig"}},

@@ -93,8 +93,8 @@ class ShortTypesTest : public ::testing::Test {
 
 TEST_F(ShortTypesTest, F60TheGroundSurvivesThemAndTheNextScanIsWhole) {
   Process peer({SHORT_PEER, {Domain(), "edge"}, {}});
-  const std::vector<std::string> topics = {"2/depth", "2/thermal",     "2/outside_pose",
-                                           "2/rig",   "2/edge_status", "2/command_result"};
+  const std::vector<std::string> topics = {"3/depth", "3/thermal",     "3/external_odometry",
+                                           "3/rig",   "3/edge_status", "3/command_result"};
   ExpectToSurviveTwice(Ground("waiting"), peer, topics);
   Process ground(Ground("ground"));
   AwaitDelivery(peer, topics);
@@ -107,7 +107,7 @@ TEST_F(ShortTypesTest, F60TheGroundSurvivesThemAndTheNextScanIsWhole) {
 
 TEST_F(ShortTypesTest, F60TheEdgeSurvivesThemAndTheNextScanIsWhole) {
   Process peer({SHORT_PEER, {Domain(), "edge"}, {}});
-  const std::vector<std::string> topics = {"2/command", "2/receipt", "2/feedback"};
+  const std::vector<std::string> topics = {"3/command", "3/receipt", "3/feedback"};
   ExpectToSurviveTwice(Edge(), peer, topics);
   std::filesystem::remove(Path("edge.mcap"));
   Process edge(Edge());

@@ -25,7 +25,7 @@ constexpr dds_duration_t kRepeat = DDS_MSECS(50);
 constexpr int kMaxRepeats = 1200;  // A minute: nobody is there any more.
 constexpr bool kSameMajor = PEER_MAJOR == kWireMajor;
 // A peer of wire 1 had no version in the names.
-constexpr const char* kTopics = PEER_MAJOR == 1 ? "isotherm/" : "isotherm/2/";
+constexpr const char* kTopics = PEER_MAJOR == 1 ? "isotherm/" : "isotherm/3/";
 
 /// Writes and reads one topic.
 template <typename Sample>

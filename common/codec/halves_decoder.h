@@ -12,9 +12,13 @@
 
 namespace isotherm::codec {
 
-/// Unpacks what PredictiveEncoder packs. Keeps its memory from image to image. Thread-compatible.
+/// Unpacks images that were packed in two halves, upper and lower. Keeps its memory from image to
+/// image. Thread-compatible.
+///
+///   payload = frequencies of each context, upper half, lower half
+///   half    = number of words, number of bytes of raw bits, words, raw bits
 template <typename Model>
-class PredictiveDecoder {
+class HalvesDecoder {
  public:
   /// False if the payload does not fit the image. Leaves the pixels in image().
   bool Decode(PayloadReader& in, int width, int height) {
@@ -23,9 +27,9 @@ class PredictiveDecoder {
       if (!GetFrequencies(in, frequencies)) return false;
       tables_->Set(context, frequencies);
     }
-    std::optional<Strip> upper = GetStrip(in);
+    std::optional<Half> upper = GetHalf(in);
     if (!upper) return false;
-    std::optional<Strip> lower = GetStrip(in);
+    std::optional<Half> lower = GetHalf(in);
     if (!lower || !in.AtEnd()) return false;
     image_.Reset(width, height);
     if constexpr (Model::kHasHoles) filled_.Reset(width, height);
@@ -38,8 +42,8 @@ class PredictiveDecoder {
  private:
   using Tables = DecodeTables<kContexts<Model>>;
 
-  /// Reads the tokens and the raw bits of one of an image's two strips.
-  struct Strip {
+  /// Reads the tokens and the raw bits of one of an image's halves.
+  struct Half {
     RansDecoder tokens;
     BitReader bits;
 
@@ -55,7 +59,7 @@ class PredictiveDecoder {
     const std::uint16_t* filled_above;
   };
 
-  static std::optional<Strip> GetStrip(PayloadReader& in) {
+  static std::optional<Half> GetHalf(PayloadReader& in) {
     const std::optional<std::uint32_t> words = in.Varint();
     const std::optional<std::uint32_t> bits = in.Varint();
     if (!words || !bits) return std::nullopt;
@@ -63,13 +67,13 @@ class PredictiveDecoder {
     if (!word_bytes) return std::nullopt;
     const auto bit_bytes = in.Bytes(*bits);
     if (!bit_bytes) return std::nullopt;
-    return Strip{.tokens = RansDecoder(*word_bytes), .bits = BitReader(*bit_bytes)};
+    return Half{.tokens = RansDecoder(*word_bytes), .bits = BitReader(*bit_bytes)};
   }
 
-  /// One row of each strip at a time: the processor overlaps the two chains of dependent pixels.
-  void DecodeRows(Strip& upper_strip, Strip& lower_strip) {
-    Strip upper = upper_strip;  // Local, so that they stay in registers.
-    Strip lower = lower_strip;
+  /// One row of each half at a time: the processor overlaps the two chains of dependent pixels.
+  void DecodeRows(Half& upper_half, Half& lower_half) {
+    Half upper = upper_half;  // Local, so that they stay in registers.
+    Half lower = lower_half;
     const int width = image_.width();
     int y = 0;
     for (int z = image_.FirstRow(1); z < image_.EndRow(1); ++y, ++z) {
@@ -82,12 +86,12 @@ class PredictiveDecoder {
       EndRow(y);
       EndRow(z);
     }
-    if (y < image_.EndRow(0)) {  // Of an odd number of rows the upper strip has one more.
+    if (y < image_.EndRow(0)) {  // Of an odd number of rows the upper half has one more.
       const Rows rows = BeginRow(y);
       for (int x = 1; x <= width; ++x) DecodePixel(*tables_, upper, rows, x);
     }
-    upper_strip = upper;
-    lower_strip = lower;
+    upper_half = upper;
+    lower_half = lower;
   }
 
   Rows BeginRow(int y) {
@@ -105,14 +109,14 @@ class PredictiveDecoder {
     if constexpr (Model::kHasHoles) filled_.PadRight(y);
   }
 
-  static void DecodePixel(const Tables& tables, Strip& strip, const Rows& rows, int x) {
+  static void DecodePixel(const Tables& tables, Half& half, const Rows& rows, int x) {
     const Neighbours neighbours{.west = rows.filled[x - 1],
                                 .north = rows.filled_above[x],
                                 .north_west = rows.filled_above[x - 1],
                                 .north_east = rows.filled_above[x + 1]};
     const int context =
         Context<Model>(BitWidth(Activity(neighbours)), rows.row[x - 1] == 0, rows.above[x] == 0);
-    std::uint32_t token = strip.tokens.Get(tables, static_cast<std::size_t>(context));
+    std::uint32_t token = half.tokens.Get(tables, static_cast<std::size_t>(context));
     if constexpr (Model::kHasHoles) {
       if (token == 0) {
         rows.row[x] = 0;
@@ -124,7 +128,7 @@ class PredictiveDecoder {
     const TokenRange range = kTokenRanges[token];
     int residual = range.base;
     if (!Model::kRawBitsAreRare || range.raw_bits != 0) {
-      residual += static_cast<int>(strip.bits.Get(range.raw_bits));
+      residual += static_cast<int>(half.bits.Get(range.raw_bits));
     }
     const auto pixel = static_cast<std::uint16_t>(Model::Predict(neighbours) + UnZigZag(residual));
     rows.row[x] = pixel;
