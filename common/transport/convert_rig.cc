@@ -88,8 +88,8 @@ void ToWireSensors(const Rig& rig, isotherm_wire_Rig* to) {
 }
 
 void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
-  // Edges before wire 2.2 do not send these; their members read as zeros, which would be wrong
-  // values rather than the rig's defaults.
+  // In a sample that ends before them these members read as zeros, which would be wrong values
+  // rather than the rig's defaults.
   if (!from.has_sensors) return;
   rig->depth_sensor = {.near_range_m = from.depth_sensor.near_range_m,
                        .min_depth_m = from.depth_sensor.min_depth_m,

@@ -50,7 +50,7 @@ std::string WhatToDo() {
   return "calibrate it again: `isotherm calibrate time RECORDING --rig RIG_FILE`";
 }
 
-std::string WithHint(std::string verdict, const DelayEstimate& off_by) {
+std::string WithHint(const std::string& verdict, const DelayEstimate& off_by) {
   const std::string hint = HintOfDrift(off_by);
   return hint.empty() ? verdict : verdict + " (" + hint + ")";
 }

@@ -112,7 +112,7 @@ TEST_F(WireVersionTest, APeerOfANewerMinorAndWeUnderstandEachOther) {
   }
   EXPECT_EQ(peer.WaitForExit(kPatience), 0) << peer.output();
 
-  EXPECT_THAT(peer.output(), HasSubstr("hello 2." + std::to_string(kWireMinor) + "\n"));
+  EXPECT_THAT(peer.output(), HasSubstr(fmt::format("hello {}.{}\n", kWireMajor, kWireMinor)));
   EXPECT_THAT(peer.output(), HasSubstr("status 21 published 60 error 0.25 feedback 9 p99 0.5\n"));
   EXPECT_THAT(peer.output(), HasSubstr("command 22 kind 5\n"));
   EXPECT_THAT(peer.output(), HasSubstr("receipt 23 thermal 48 hole 8\n"));

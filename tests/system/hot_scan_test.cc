@@ -133,7 +133,7 @@ TEST_F(HotScanTest, InspectSaysTheScale) {
   const Finished inspect = RunToEnd({Tool(), {"inspect", Path("source.mcap")}, {}}, kPatience);
   EXPECT_EQ(inspect.status, 0) << inspect.output;
   EXPECT_THAT(inspect.output, HasSubstr("thermal scale 0.02 K from 0 K on (up to 1038 °C)"));
-  EXPECT_THAT(inspect.output, HasSubstr("scaled thermal-rans"));
+  EXPECT_THAT(inspect.output, HasSubstr("scaled thermal-strips"));
 }
 
 }  // namespace
