@@ -116,9 +116,10 @@ TEST_F(P1Test, SizeFollowsFromTheProductAndNothingElse) {
   EXPECT_EQ(source->cameras().front().width, 160);
   const std::vector<RawFrame> frames = ReadFrames(*source, 9);
   ASSERT_EQ(frames.size(), 9U) << failure_.message();
+  std::vector<std::size_t> pieces;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i == 5) {
-      EXPECT_TRUE(frames[i].pixels.empty());  // The piece; the whole frame behind it is good.
+    if (frames[i].pixels.empty()) {
+      pieces.push_back(i);
       continue;
     }
     EXPECT_EQ(frames[i].pixels.width(), 160);
@@ -128,8 +129,15 @@ TEST_F(P1Test, SizeFollowsFromTheProductAndNothingElse) {
     EXPECT_FALSE(frames[i].shutter_closed);
     EXPECT_FALSE(frames[i].camera_nuc.has_value());
   }
-  EXPECT_EQ(frames[1].device_ticks - frames[0].device_ticks, milliseconds(40));
-  EXPECT_EQ(source->counts().lost, 0U);
+  // The piece; the whole frame behind it is good. A busy computer may lose frames, and counts them.
+  const std::uint64_t lost = source->counts().lost;
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_LE(pieces.front(), 5U);
+  EXPECT_GE(pieces.front() + lost, 5U);
+  const auto ticks = frames[1].device_ticks - frames[0].device_ticks;
+  EXPECT_GE(ticks, milliseconds(40));
+  EXPECT_LE(ticks, (lost + 1) * milliseconds(40));
+  EXPECT_EQ(ticks % milliseconds(40), milliseconds(0));
   source->Close();
   EXPECT_EQ(camera->alternate(), 0);
 }
