@@ -95,7 +95,7 @@ std::vector<std::string> FeedbackParts(const Feedback& feedback, std::vector<std
 
 std::string FeedbackText(const Feedback& feedback) {
   std::string text;
-  for (std::string& part : FeedbackParts(feedback)) Append(std::move(part), text);
+  for (const std::string& part : FeedbackParts(feedback)) Append(part, text);
   return text;
 }
 

@@ -34,10 +34,10 @@ using ::testing::HasSubstr;
 constexpr int kFirstNames = 20'000;
 constexpr int kNames = 30'000;
 /// Unbounded they took 0.6 kB per name and topic, 18 MB each; bounded, 0.1 to 1.3 MB in all.
-constexpr long kMaxGrowth_kB = 4 * 1024;
+constexpr long kMaxGrowth_kb = 4 * 1024;
 
 /// Resident memory.
-long MemoryOf_kB(pid_t pid) {
+long MemoryOf_kb(pid_t pid) {
   std::ifstream statm("/proc/" + std::to_string(pid) + "/statm");
   long size = 0;
   long resident = 0;
@@ -124,11 +124,11 @@ TEST(FloodTest, F64MalformedPacketsLeaveALineInTenSecondsWithTheirNumberAndNothi
     packets.Send(ports, 1000);
     ASSERT_TRUE(daemon->WaitForOutput("malformed packet", kPatience)) << daemon->output();
     const auto first_line = std::chrono::steady_clock::now();
-    const long before_kB = MemoryOf_kB(daemon->pid());
+    const long before_kb = MemoryOf_kb(daemon->pid());
     // A scan goes on meanwhile, whose model grows; 200 bytes kept of each packet would be 40 MB.
-    constexpr long kMaxGrowthInAScan_kB = 24 * 1024;
+    constexpr long kMaxGrowthInAScan_kb = 24 * 1024;
     packets.Send(ports, 200'000);
-    EXPECT_LT(MemoryOf_kB(daemon->pid()) - before_kB, kMaxGrowthInAScan_kB);
+    EXPECT_LT(MemoryOf_kb(daemon->pid()) - before_kb, kMaxGrowthInAScan_kb);
     while (!daemon->WaitForOutput("more since the last such line", Seconds(0.1))) {
       ASSERT_LT(Seconds(std::chrono::steady_clock::now() - first_line), kPatience);
       packets.Send(ports, 10);
@@ -170,17 +170,17 @@ TEST_P(NameFloodTest, F62EverNewNamesDoNotMakeEitherDaemonGrow) {
     return peer;  // As long as it lives, the middleware keeps what it knows of its names.
   };
   const auto first = flood(kFirstNames);
-  const long edge_before_kB = MemoryOf_kB(edge.pid());
-  const long ground_before_kB = MemoryOf_kB(ground.pid());
-  ASSERT_GT(edge_before_kB, 0);
-  ASSERT_GT(ground_before_kB, 0);
+  const long edge_before_kb = MemoryOf_kb(edge.pid());
+  const long ground_before_kb = MemoryOf_kb(ground.pid());
+  ASSERT_GT(edge_before_kb, 0);
+  ASSERT_GT(ground_before_kb, 0);
   const auto second = flood(kNames);
-  const long edge_growth_kB = MemoryOf_kB(edge.pid()) - edge_before_kB;
-  const long ground_growth_kB = MemoryOf_kB(ground.pid()) - ground_before_kB;
-  std::cout << kNames << " names on each topic: edge " << edge_growth_kB << " kB, ground "
-            << ground_growth_kB << " kB more\n";
-  EXPECT_LT(edge_growth_kB, kMaxGrowth_kB);
-  EXPECT_LT(ground_growth_kB, kMaxGrowth_kB);
+  const long edge_growth_kb = MemoryOf_kb(edge.pid()) - edge_before_kb;
+  const long ground_growth_kb = MemoryOf_kb(ground.pid()) - ground_before_kb;
+  std::cout << kNames << " names on each topic: edge " << edge_growth_kb << " kB, ground "
+            << ground_growth_kb << " kB more\n";
+  EXPECT_LT(edge_growth_kb, kMaxGrowth_kb);
+  EXPECT_LT(ground_growth_kb, kMaxGrowth_kb);
   EXPECT_EQ(edge.WaitForExit(Seconds(0)), std::nullopt) << edge.output();
   EXPECT_EQ(ground.WaitForExit(Seconds(0)), std::nullopt) << ground.output();
   EXPECT_THAT(edge.output(), HasSubstr("too many names"));
