@@ -3,37 +3,21 @@
 #include <algorithm>
 #include <optional>
 
-#include "common/codec/depth_values.h"
-#include "common/codec/halves_decoder.h"
-
 namespace isotherm::codec {
-
-struct DepthHalvesDecoder::Scratch {
-  DepthValues values;
-  HalvesDecoder<DepthModel> decoder;
-};
-struct ThermalHalvesDecoder::Scratch {
-  HalvesDecoder<ThermalModel> decoder;
-};
-
-DepthHalvesDecoder::DepthHalvesDecoder() : scratch_(std::make_unique<Scratch>()) {}
-DepthHalvesDecoder::~DepthHalvesDecoder() = default;
-ThermalHalvesDecoder::ThermalHalvesDecoder() : scratch_(std::make_unique<Scratch>()) {}
-ThermalHalvesDecoder::~ThermalHalvesDecoder() = default;
 
 Status DepthHalvesDecoder::Decode(std::span<const std::uint8_t> payload,
                                   Image<std::uint16_t>& image) {
   PayloadReader in(payload);
-  const std::optional<std::uint32_t> values = scratch_->values.Get(in);
-  if (!values || !scratch_->decoder.Decode(in, image.width(), image.height()))
+  const std::optional<std::uint32_t> values = values_.Get(in);
+  if (!values || !decoder_.Decode(in, image.width(), image.height()))
     return DataLoss("depth image is damaged");
-  PaddedImage& padded = scratch_->decoder.image();
+  PaddedImage& padded = decoder_.image();
   std::uint32_t largest = 0;
   for (int y = 0; y < image.height(); ++y) {
     const std::span coded(padded.Row(y) + 1, static_cast<std::size_t>(image.width()));
     std::ranges::transform(coded, image.Row(y).begin(), [&](std::uint16_t value) {
       largest = std::max<std::uint32_t>(largest, value);
-      return scratch_->values.mapping()[value];
+      return values_.mapping()[value];
     });
   }
   return largest < *values ? OkStatus() : DataLoss("depth image is damaged");
@@ -42,9 +26,9 @@ Status DepthHalvesDecoder::Decode(std::span<const std::uint8_t> payload,
 Status ThermalHalvesDecoder::Decode(std::span<const std::uint8_t> payload,
                                     Image<std::uint16_t>& image) {
   PayloadReader in(payload);
-  if (!scratch_->decoder.Decode(in, image.width(), image.height()))
+  if (!decoder_.Decode(in, image.width(), image.height()))
     return DataLoss("thermal image is damaged");
-  PaddedImage& padded = scratch_->decoder.image();
+  PaddedImage& padded = decoder_.image();
   for (int y = 0; y < image.height(); ++y)
     std::copy_n(padded.Row(y) + 1, image.width(), image.Row(y).begin());
   return OkStatus();

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "common/base/status.h"
+#include "common/codec/depth_values.h"
+#include "common/codec/halves_decoder.h"
 #include "common/frame/image.h"
 
 /// These unpack images of Encoding::kDepthRans, kThermalRans and kScaledThermalRans, in which
@@ -14,27 +15,22 @@ namespace isotherm::codec {
 /// Keeps its memory. Thread-compatible.
 class DepthHalvesDecoder {
  public:
-  DepthHalvesDecoder();
-  ~DepthHalvesDecoder();
   /// `image` has the size that the payload must have.
   Status Decode(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image);
 
  private:
-  struct Scratch;
-  std::unique_ptr<Scratch> scratch_;
+  DepthValues values_;
+  HalvesDecoder<DepthModel> decoder_;
 };
 
 /// Keeps its memory. Thread-compatible.
 class ThermalHalvesDecoder {
  public:
-  ThermalHalvesDecoder();
-  ~ThermalHalvesDecoder();
   /// `image` has the size that the payload must have.
   Status Decode(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image);
 
  private:
-  struct Scratch;
-  std::unique_ptr<Scratch> scratch_;
+  HalvesDecoder<ThermalModel> decoder_;
 };
 
 }  // namespace isotherm::codec

@@ -93,7 +93,6 @@ std::optional<RefusalCause> FromWireLists(const isotherm_wire_Feedback& from, Fe
     to->latencies.push_back(
         {.stage = ReadText(latency.stage), .p50_s = latency.p50_s, .p99_s = latency.p99_s});
   }
-  // The wire keeps its old word until its next major version (see docs/subscribing.md).
   const auto image = Elements(from.confidence_image);
   to->image.assign(image.begin(), image.end());
   return std::nullopt;
