@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "common/base/pause.h"
 #include "common/base/service.h"
+#include "common/concurrency/worker.h"
 #include "common/transport/join_domain.h"
 #include "ground/export/result_files.h"
 #include "ground/service/distributor.h"
@@ -21,7 +22,6 @@
 #include "ground/service/result_writer.h"
 #include "ground/service/scan_board.h"
 #include "ground/service/status_reporter.h"
-#include "ground/service/worker.h"
 #include "ground/subscriber/subscriber.h"
 
 namespace isotherm {

@@ -29,6 +29,7 @@ const std::map<std::string, std::string>& SdkHomes() {
       {"libusb", "edge/usb"},
       {"umockdev", "edge/usb/testing"},
       {"png.h", "common/png"},
+      {"openssl/", "common/security"},
       {"systemd/", "common/base"},
       {"ceres/", "ground/camera_calibration"},
   };
@@ -40,6 +41,7 @@ const FolderArrows& Arrows() {
       {"common/base", {}},
       {"common/time", {"common/base"}},
       {"common/simd", {}},
+      {"common/security", {"common/base"}},
       {"common/concurrency", {"common/base"}},
       {"common/geometry", {"common/base", "common/time"}},
       {"common/radiometry", {"common/base"}},
