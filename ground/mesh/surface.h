@@ -23,7 +23,8 @@ struct CloudPoint {
   std::uint8_t motion_class = kNeverMeasured;
   std::uint8_t disagreement_class = kNeverMeasured;
   // Of the measurement; empty or NaN without a temperature or without records.
-  std::uint8_t nuc_epoch = 0;  ///< NUCs before it, modulo 256.
+  std::uint8_t nuc_epoch = 0;   ///< NUCs before it, modulo 256.
+  std::uint8_t good_count = 0;  ///< Measurements under good conditions, up to 63.
   float nuc_age_s = NAN;
   float measured_distance_m = NAN;
   float measured_angle_deg = NAN;  ///< To the surface as it is now.
