@@ -120,6 +120,7 @@ bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_
     // tracked against.
     map->tsdf->set_may_end_rays(copy, from.tsdf->may_end_rays(block));
   }
+  map->versions.NoteAll(map->tsdf->block_count());
   maps_.push_back(std::move(map));
   // The maps agree here exactly. The link's uncertainty stands for the drift within the map that
   // ends.
@@ -238,6 +239,7 @@ bool Atlas::Merge(double max_weight, ThreadPool& pool,
     if (progress) progress(static_cast<double>(i) / size());
   }
   std::erase(maps_, nullptr);
+  world.versions.NoteAll(world.tsdf->block_count());
   links_.clear();
   active_ = 0;
   return has_room;

@@ -6,6 +6,7 @@
 
 #include "ground/relocaliser/relocaliser.h"
 #include "ground/thermal/thermal_volume.h"
+#include "ground/tsdf/block_versions.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
@@ -24,6 +25,7 @@ struct SubMap {
   /// Views that drift is counted from: the one where it was begun, or those of a saved model.
   std::vector<RigidTransform> anchors;
   std::uint64_t integrated = 0;  ///< Frames.
+  BlockVersions versions;        ///< When blocks of `tsdf` and `thermal` last changed.
 };
 
 }  // namespace isotherm

@@ -97,6 +97,7 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   SubMap& map = atlas_.active();
   if (Status status = LoadSubMap(model, rig_, map); !status.ok()) return status;
   if (map.tsdf->block_count() == 0) return OkStatus();
+  map.versions.NoteAll(map.tsdf->block_count());
   // The rig is somewhere near the views of the model; until it is found nothing is added.
   tracker_.BeginLost();
   // The model is there: its first frames need not be integrated whatever their motion.
@@ -244,6 +245,7 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
   integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
   // Temperatures lie beside the distances block by block, so they grow with them.
   thermal_has_room_ = map.thermal->Commit(map.tsdf->block_count());
+  map.versions.Note(integrator_.updated_blocks());
   ++map.integrated;
   if (map.anchors.empty()) map.anchors.push_back(T_map_depth);
   spiller_.Touch(integrator_.updated_blocks());
@@ -329,7 +331,8 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
       .mean_depth_m = uncertainty.mean_depth_m(),
       .tsdf = *map.tsdf,
       .refusal = WhyNoThermal(),
-      .every_second = load_shedding_ == LoadShedding::kHalfThermal};
+      .every_second = load_shedding_ == LoadShedding::kHalfThermal,
+      .versions = &map.versions};
   certainties_.push_back({frame.time, static_cast<float>(tracked.surface_sigma_rad),
                           static_cast<float>(tracked.mean_depth_m)});
   thermal_stage_->FuseUpTo(tracked, *map.thermal, pool_);
@@ -342,6 +345,7 @@ void GroundPipeline::Finish(const std::function<void(double)>& progress) {
     const SubMap& map = atlas_.active();
     thermal_stage_->Finish(*map.tsdf, *map.thermal, pool_);
   }
+  atlas_.active().versions.NoteAll(atlas_.active().tsdf->block_count());
 }
 
 std::unique_ptr<ThermalPass> GroundPipeline::BeginThermalPass() {

@@ -156,6 +156,7 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
       fuser_.Fuse({*waiting.frame, T_map_thermal, depth.view.camera, T_map_depth_at_capture},
                   capture, depth.tsdf, pool, thermal);
   ++counts_.thermal_fused;
+  if (depth.versions != nullptr) depth.versions->Note(fuser_.fused_blocks());
 }
 
 void ThermalStage::Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) {

@@ -17,6 +17,7 @@
 #include "ground/thermal/nuc_epochs.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/thermal/uncertainty_budget.h"
+#include "ground/tsdf/block_versions.h"
 
 namespace isotherm {
 
@@ -33,8 +34,9 @@ struct TrackedDepth {
   const TsdfVolume& tsdf;
   /// Says why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
-  bool every_second = false;  ///< There is time for every second thermal frame only.
-  bool is_finished = false;   ///< CaptureConditions::surface_is_finished.
+  bool every_second = false;          ///< There is time for every second thermal frame only.
+  bool is_finished = false;           ///< CaptureConditions::surface_is_finished.
+  BlockVersions* versions = nullptr;  ///< Hears which blocks got temperatures.
 };
 
 /// Returns whether a frame comes from a camera that measures no temperatures

@@ -84,6 +84,8 @@ class ThermalFuser {
   /// dropped.
   std::int64_t FinalReview(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) const;
 
+  /// Blocks that the last Fuse may have changed.
+  const std::vector<std::int32_t>& fused_blocks() const { return blocks_; }
   const CameraModel& ideal_camera() const { return rectifier_.ideal_camera(); }
 
  private:

@@ -121,6 +121,7 @@ const FolderArrows& Arrows() {
       {"ground/pipeline",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/thermal",
         "ground/atlas", "ground/tracker", "ground/model", "ground/scan"}},
+      {"ground/snapshot", {"ground/surface", "ground/tsdf", "ground/thermal", "ground/atlas"}},
       {"ground/camera_calibration", {"common/dataset", "common/simulation", "ground/json"}},
       {"ground/results",
        {"common/dataset", "ground/options", "ground/json", "ground/surface", "ground/thermal",
