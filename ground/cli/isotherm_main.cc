@@ -79,6 +79,7 @@ void AddCommands(CLI::App& app, CommandBody& body) {
   AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);
   AddExportCommand(app, body);
+  AddMeasureCommand(app, body);
   AddSimulateCommand(app, body);
   AddLimitsCommand(app, body);
   AddExperimentCommand(app, body);

@@ -103,7 +103,10 @@ PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& ther
   PointMeasurement measurement{.voxel = VoxelAt(thermal, place), .conditions = {}};
   if (!measurement.voxel.measured() || thermal.records() == nullptr) return measurement;
   const RecordRow* row = thermal.records()->Find(place.block, place.index / RecordRow::kVoxels);
-  if (row != nullptr) measurement.conditions = row->conditions[place.index % RecordRow::kVoxels];
+  if (row != nullptr) {
+    measurement.conditions = row->conditions[place.index % RecordRow::kVoxels];
+    measurement.disagreement = row->disagreement[place.index % RecordRow::kVoxels];
+  }
   measurement.sigma_k = SigmaCode::Kelvin(thermal.sigma_code(place.block, place.index));
   return measurement;
 }

@@ -115,6 +115,7 @@ struct PointMeasurement {
   ThermalVoxel voxel;
   ConditionRecord conditions;  ///< Empty: not kept.
   float sigma_k = NAN;  ///< Standard uncertainty of the apparent temperature; NaN = not known.
+  DisagreementRecord disagreement{};  ///< Between conditions.good_count measurements.
 };
 
 /// Where a voxel is kept.
