@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ground/calibration/delay_check.h"
+#include "ground/console/console_options.h"
 #include "ground/export/result_files.h"
 #include "ground/feedback/advice.h"
 #include "ground/icp/icp_tracker.h"
@@ -77,6 +78,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.live()));
   check(Validate(options.feedback()));
   check(Validate(options.delay_check()));
+  check(Validate(options.console()));
   if (options.threads() < 0 || options.threads() > 256) {
     check(InvalidArgument(
         fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));

@@ -1,0 +1,54 @@
+#include "ground/console/group_schedule.h"
+
+#include <limits>
+
+namespace isotherm {
+
+void GroupSchedule::Note(const GroupKey& key) {
+  Group& group = groups_[key];
+  if (group.is_waiting) return;
+  group.is_waiting = true;
+  ++waiting_;
+}
+
+void GroupSchedule::NoteBlock(int map, const GridIndex& block,
+                              const Eigen::Vector3i& blocks_of_grid) {
+  // Points near the border of a group are made with voxels of the next block.
+  const GridIndex low = (block - GridIndex::Ones()).cwiseMax(0) / kGroupBlocks;
+  const GridIndex high =
+      (block + GridIndex::Ones()).cwiseMin(blocks_of_grid - GridIndex::Ones()) / kGroupBlocks;
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) Note({map, x, y, z});
+    }
+  }
+}
+
+std::optional<GroupKey> GroupSchedule::Take(SteadyTime now, int active_map,
+                                            const Eigen::Vector3d& rig_group) {
+  // What is in another sub-map is as far as can be.
+  constexpr double kElsewhere = 1e6;
+  auto best = groups_.end();
+  double best_score = -std::numeric_limits<double>::infinity();
+  for (auto entry = groups_.begin(); entry != groups_.end(); ++entry) {
+    const auto& [key, group] = *entry;
+    if (!group.is_waiting || (group.made && now - *group.made < interval_)) continue;
+    const double distance =
+        key.map == active_map
+            ? (Eigen::Vector3d(key.x + 0.5, key.y + 0.5, key.z + 0.5) - rig_group).norm()
+            : kElsewhere;
+    // Seconds outdated per group side of distance; what was never made comes before all.
+    const double score =
+        group.made ? ToSeconds(now - *group.made) / (1.0 + distance) : 1e9 - distance;
+    if (score <= best_score) continue;
+    best_score = score;
+    best = entry;
+  }
+  if (best == groups_.end()) return std::nullopt;
+  best->second.is_waiting = false;
+  best->second.made = now;
+  --waiting_;
+  return best->first;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,87 @@
+#include "ground/console/group_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+const Eigen::Vector3i kBlocks(40, 40, 40);
+
+class GroupScheduleTest : public ::testing::Test {
+ protected:
+  /// A block in the middle of group (x, 0, 0): it touches no other.
+  void NoteGroup(int x, int map = 0) { schedule_.NoteBlock(map, {4 * x + 1, 1, 1}, kBlocks); }
+  int TakeX(SteadyTime now, const Eigen::Vector3d& rig = Eigen::Vector3d::Zero()) {
+    const auto key = schedule_.Take(now, 0, rig);
+    return key ? key->x : -1;
+  }
+  const SteadyTime start_{1h};
+  GroupSchedule schedule_{1s};
+};
+
+TEST_F(GroupScheduleTest, NothingChangedIsNothingToDo) {
+  EXPECT_EQ(TakeX(start_), -1);
+  EXPECT_EQ(schedule_.waiting(), 0U);
+}
+
+TEST_F(GroupScheduleTest, TheNearestNewGroupIsMadeFirst) {
+  for (const int x : {1, 7, 4}) NoteGroup(x);
+  const Eigen::Vector3d rig(4.9, 0.5, 0.5);
+  EXPECT_EQ(TakeX(start_, rig), 4);
+  EXPECT_EQ(TakeX(start_, rig), 7);
+  EXPECT_EQ(TakeX(start_, rig), 1);
+  EXPECT_EQ(TakeX(start_, rig), -1);
+}
+
+TEST_F(GroupScheduleTest, AGroupIsMadeAgainNoSoonerThanItsInterval) {
+  NoteGroup(1);
+  EXPECT_EQ(TakeX(start_), 1);
+  NoteGroup(1);
+  EXPECT_EQ(TakeX(start_ + 500ms), -1);
+  EXPECT_EQ(schedule_.waiting(), 1U);
+  EXPECT_EQ(TakeX(start_ + 1s), 1);
+}
+
+TEST_F(GroupScheduleTest, NewSurfaceComesBeforeBetterSurface) {
+  NoteGroup(0);
+  EXPECT_EQ(TakeX(start_), 0);
+  NoteGroup(0);
+  NoteGroup(9);
+  EXPECT_EQ(TakeX(start_ + 5s), 9);
+  EXPECT_EQ(TakeX(start_ + 5s), 0);
+}
+
+TEST_F(GroupScheduleTest, FarGroupsGetTheirTurn) {
+  for (const int x : {0, 9}) NoteGroup(x);
+  TakeX(start_);
+  TakeX(start_);
+  std::set<int> made;
+  for (SteadyTime now = start_; now < start_ + 30s; now += 1s) {  // Time for one each second.
+    for (const int x : {0, 9}) NoteGroup(x);
+    made.insert(TakeX(now));
+  }
+  EXPECT_TRUE(made.contains(9));
+}
+
+TEST_F(GroupScheduleTest, ABlockAtABorderChangesTheGroupsBesideIt) {
+  schedule_.NoteBlock(0, {4, 4, 4}, kBlocks);
+  EXPECT_EQ(schedule_.waiting(), 8U);
+  schedule_.Clear();
+  schedule_.NoteBlock(0, {0, 1, 1}, kBlocks);  // At the volume's border there is nobody beside it.
+  EXPECT_EQ(schedule_.waiting(), 1U);
+}
+
+TEST_F(GroupScheduleTest, WhatIsInTheActiveSubMapComesFirst) {
+  NoteGroup(0, 1);
+  NoteGroup(9, 0);
+  const auto first = schedule_.Take(start_, 0, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->map, 0);
+}
+
+}  // namespace
+}  // namespace isotherm
