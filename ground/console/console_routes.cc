@@ -1,0 +1,81 @@
+#include "ground/console/console_routes.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+
+namespace isotherm {
+namespace {
+
+WebReply Text(int status, std::string text) {
+  WebReply reply;
+  reply.status = status;
+  reply.body = std::make_shared<const std::string>(std::move(text));
+  return reply;
+}
+
+WebReply JsonReply(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.always_print_primitive_fields = true;
+  options.preserve_proto_field_names = true;
+  options.add_whitespace = true;
+  std::string json;
+  static_cast<void>(google::protobuf::util::MessageToJsonString(message, &json, options));
+  WebReply reply;
+  reply.content_type = "application/json";
+  reply.headers = {{"Cache-Control", "no-store"}};
+  reply.body = std::make_shared<const std::string>(std::move(json));
+  return reply;
+}
+
+}  // namespace
+
+WebHandlers ConsoleRoutes::Handlers() {
+  return {.request = [this](const WebRequest& request, Reply reply) { Answer(request, reply); },
+          .socket = [this](const WebRequest& request) { return Accept(request); }};
+}
+
+WebReply ConsoleRoutes::AnswerFromKept(const WebRequest& request) const {
+  live::ServerMessage message;
+  const LiveKind kind = request.path == "/api/state"  ? LiveKind::kState
+                        : request.path == "/api/scan" ? LiveKind::kScan
+                                                      : LiveKind::kMeasurements;
+  if (const LiveMessagePtr kept = session_.hub.Kept(kind)) message.ParseFromString(kept->bytes);
+  if (kind == LiveKind::kState) return JsonReply(message.state());
+  if (kind == LiveKind::kScan) return JsonReply(message.scan());
+  return JsonReply(message.measurements());
+}
+
+void ConsoleRoutes::Answer(const WebRequest& request, const Reply& reply) {
+  WebReply answer;
+  const bool is_api = request.path.starts_with("/api/");
+  if (std::optional<WebReply> refusal = access_.Refusal(request)) {
+    answer = std::move(*refusal);
+  } else if (request.path == "/api/login") {
+    answer = access_.LogIn(request);
+  } else if (is_api && !access_.RoleOf(request)) {
+    answer = Text(401, "log in first: POST the code to /api/login\n");
+  } else if (request.path == "/api/state" || request.path == "/api/scan" ||
+             request.path == "/api/measurements") {
+    answer = AnswerFromKept(request);
+  } else {
+    answer = page_.Answer(request);
+  }
+  AddSafetyHeaders(answer);
+  reply(std::move(answer));
+}
+
+std::variant<AcceptedSocket, WebReply> ConsoleRoutes::Accept(const WebRequest& request) {
+  if (std::optional<WebReply> refusal = access_.Refusal(request)) return std::move(*refusal);
+  const std::optional<live::Role> role = access_.RoleOf(request);
+  if (!role) return Text(401, "log in first: POST the code to /api/login\n");
+  if (session_.hub.clients() >= static_cast<std::size_t>(options_.expert().max_viewers()))
+    return Text(503, "too many viewers (console.expert.max_viewers)\n");
+  if (request.path != "/live") return Text(404, "there is no such socket\n");
+  if (std::ranges::find(request.subprotocols, kLiveSubprotocol) == request.subprotocols.end())
+    return Text(400, "the subprotocol must be isotherm.live.v1\n");
+  return AcceptedSocket{.handler = std::make_unique<LiveSession>(session_, *role),
+                        .subprotocol = std::string(kLiveSubprotocol)};
+}
+
+}  // namespace isotherm

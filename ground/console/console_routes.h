@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "ground/console/access.h"
+#include "ground/console/live_session.h"
+#include "ground/console/static_page.h"
+#include "ground/console/web_server.h"
+#include "ground/options/ground_options.pb.h"
+
+namespace isotherm {
+
+/// Says what is found where: the page, /api, /live; and who may come in. Thread-bound to the I/O
+/// thread.
+class ConsoleRoutes {
+ public:
+  /// `session` must outlive it.
+  ConsoleRoutes(LiveSession::Context& session, const ConsoleOptions& options, Access access)
+      : session_(session), options_(options), access_(std::move(access)) {}
+
+  /// They refer to this.
+  WebHandlers Handlers();
+
+ private:
+  using Reply = std::function<void(WebReply)>;
+  void Answer(const WebRequest& request, const Reply& reply);
+  std::variant<AcceptedSocket, WebReply> Accept(const WebRequest& request);
+  WebReply AnswerFromKept(const WebRequest& request) const;
+
+  LiveSession::Context& session_;
+  const ConsoleOptions options_;
+  Access access_;
+  const StaticPage page_{};
+};
+
+}  // namespace isotherm
