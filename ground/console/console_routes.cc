@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ground/console/foxglove_session.h"
+
 namespace isotherm {
 namespace {
 
@@ -65,12 +67,24 @@ void ConsoleRoutes::Answer(const WebRequest& request, const Reply& reply) {
   reply(std::move(answer));
 }
 
+std::variant<AcceptedSocket, WebReply> ConsoleRoutes::AcceptFoxglove(const WebRequest& request,
+                                                                     live::Role role) {
+  for (const std::string& offered : request.subprotocols) {
+    if (std::ranges::find(kFoxgloveSubprotocols, offered) == std::end(kFoxgloveSubprotocols))
+      continue;
+    return AcceptedSocket{.handler = std::make_unique<FoxgloveSession>(session_, role),
+                          .subprotocol = offered};
+  }
+  return Text(400, "the subprotocol must be foxglove.sdk.v1 or foxglove.websocket.v1\n");
+}
+
 std::variant<AcceptedSocket, WebReply> ConsoleRoutes::Accept(const WebRequest& request) {
   if (std::optional<WebReply> refusal = access_.Refusal(request)) return std::move(*refusal);
   const std::optional<live::Role> role = access_.RoleOf(request);
   if (!role) return Text(401, "log in first: POST the code to /api/login\n");
   if (session_.hub.clients() >= static_cast<std::size_t>(options_.expert().max_viewers()))
     return Text(503, "too many viewers (console.expert.max_viewers)\n");
+  if (request.path == "/foxglove") return AcceptFoxglove(request, *role);
   if (request.path != "/live") return Text(404, "there is no such socket\n");
   if (std::ranges::find(request.subprotocols, kLiveSubprotocol) == request.subprotocols.end())
     return Text(400, "the subprotocol must be isotherm.live.v1\n");

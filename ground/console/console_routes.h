@@ -25,6 +25,7 @@ class ConsoleRoutes {
   using Reply = std::function<void(WebReply)>;
   void Answer(const WebRequest& request, const Reply& reply);
   std::variant<AcceptedSocket, WebReply> Accept(const WebRequest& request);
+  std::variant<AcceptedSocket, WebReply> AcceptFoxglove(const WebRequest& request, live::Role role);
   WebReply AnswerFromKept(const WebRequest& request) const;
 
   LiveSession::Context& session_;

@@ -128,7 +128,7 @@ const FolderArrows& Arrows() {
        {"ground/options", "ground/tsdf", "ground/thermal", "ground/mesh", "ground/interpretation"}},
       {"ground/snapshot", {"ground/surface", "ground/tsdf", "ground/thermal", "ground/atlas"}},
       {"ground/console",
-       {"common/security", "ground/options", "ground/surface", "ground/thermal",
+       {"common/security", "ground/options", "ground/json", "ground/surface", "ground/thermal",
         "ground/renderer", "ground/mesh", "ground/scan", "ground/measuring", "ground/snapshot"}},
       {"ground/camera_calibration", {"common/dataset", "common/simulation", "ground/json"}},
       {"ground/results",
