@@ -13,7 +13,9 @@
 #include "common/base/service.h"
 #include "common/concurrency/worker.h"
 #include "common/transport/join_domain.h"
+#include "ground/console/console.h"
 #include "ground/export/result_files.h"
+#include "ground/service/console_state.h"
 #include "ground/service/distributor.h"
 #include "ground/service/health.h"
 #include "ground/service/output_folder.h"
@@ -29,6 +31,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+// A turn of its threads takes milliseconds, but the one that keeps shapes may wait for the disk.
+constexpr auto kTimeToLeaveConsole = 1s;
 // All results are written by then. With its network interface down, the middleware never ends.
 constexpr auto kTimeToLeaveNetwork = 500ms;
 
@@ -87,7 +91,11 @@ class GroundService {
   /// Tells the service manager that all is well, while it is, and the operator how it goes.
   void GuardUntilStopped();
   void FeedWatchdog();
-  GroundSituation Situation() const;
+  /// Thread-safe.
+  GroundSituation Situation(std::optional<std::string> problem) const;
+  void OpenConsole();
+  /// The console goes on to show a scan that has ended until the next one begins.
+  void ShowEnded(std::unique_ptr<LiveScan> scan);
   /// Waits for a thread's end as long as what it needs goes on, and leaves without it otherwise.
   void WaitForEnd(Worker& worker, GroundThread thread);
   /// Ends the process although a thread is stuck in it.
@@ -107,6 +115,7 @@ class GroundService {
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Subscriber> subscriber_;
   OutputFolder output_folder_;
+  std::unique_ptr<Console> console_;  // nullptr if it is not wanted, or not to be had.
   SteadyTime next_feed_{};
   std::optional<std::string> reported_problem_;
 };
@@ -133,6 +142,9 @@ SubscriberHandlers GroundService::Handlers() {
   handlers.clock = [&to](const SessionClock& clock) { to.OnClock(clock); };
   handlers.session_end = [&to](const SessionCounters& counters) { to.OnSessionEnd(counters); };
   handlers.status = [this](const EdgeStatus& status) { board_.edge.Set(status); };
+  handlers.command_result = [this](const CommandResult& result) {
+    if (console_) console_->OnCommandResult(result);
+  };
   handlers.turn = [this] { health_.receive.Busy(clock_.SteadyNow()); };
   return handlers;
 }
@@ -149,15 +161,51 @@ Status GroundService::Open(const TransportEnvironment& environment) {
   return OkStatus();
 }
 
+void GroundService::OpenConsole() {
+  if (!options_.console().enabled()) return;
+  ConsoleServices services;
+  services.send = [this](const Command& command) { return subscriber_->Send(command); };
+  services.describe = [this](live::State& state) {
+    DescribeSituation(Situation(health_.Problem(clock_.SteadyNow())), state);
+  };
+  Result<std::unique_ptr<Console>> console = Console::Start(options_, clock_, std::move(services));
+  if (!console) {
+    LOG(Ground, Warning) << "there is no console: " << console.error().message()
+                         << "; everything else goes on (console.port sets another port, "
+                            "console.enabled=false turns it off)";
+    return;
+  }
+  console_ = std::move(*console);
+  LOG(Ground, Info) << console_->HowToComeIn(::isatty(STDERR_FILENO) == 1);
+}
+
+void GroundService::ShowEnded(std::unique_ptr<LiveScan> scan) {
+  if (!console_ || !scan || scan->shown_scan() == 0) return;
+  const std::shared_ptr<LiveScan> kept = std::move(scan);
+  const Atlas& atlas = kept->model().atlas;
+  std::vector<ReadableMap> maps;
+  for (int i = 0; i < atlas.size(); ++i) {
+    const SubMap& map = atlas.map(i);
+    maps.push_back({.tsdf = {kept, map.tsdf.get()},
+                    .thermal = {kept, map.thermal.get()},
+                    .place = {map.T_world_map, map.joined}});
+  }
+  console_->EndScan(kept->shown_scan(), std::move(maps));
+}
+
 int GroundService::Run() {
-  const auto written = [this] {
+  OpenConsole();
+  const auto written = [this](std::unique_ptr<LiveScan> scan) {
+    ShowEnded(std::move(scan));
     if (mode_.single_scan) signal_.Request();
   };
   const auto counters = [this](std::uint64_t session) { return subscriber_->counters(session); };
   ResultWriter results(options_, clock_, counters, board_, health_.results, written);
   RecordingLoop recording(options_, clock_, board_, health_.recording);
   ReconstructionLoop reconstruction(
-      options_, clock_, {*subscriber_, to_recording_, results, board_, health_.reconstruction});
+      options_, clock_,
+      {*subscriber_, to_recording_, results, board_, health_.reconstruction,
+       console_ ? &console_->feed() : nullptr});
   {
     // Consumers are started before the producers, and stopped behind them below.
     Worker result_thread("results", [&](const std::stop_token& stop) { results.Run(stop); });
@@ -194,6 +242,8 @@ int GroundService::Run() {
   for (const Status& status : {recording.status(), results.status(), reconstruction.status()}) {
     if (exit_code == 0) exit_code = ExitCode(status);
   }
+  leaving_.Arm(kTimeToLeaveConsole, exit_code, "the console");
+  console_.reset();
   leaving_.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
   return exit_code;
 }
@@ -207,7 +257,7 @@ void GroundService::GuardUntilStopped() {
   for (Pause(stop, kTick); !stop.stop_requested(); Pause(stop, kTick)) {
     FeedWatchdog();
     output_folder_.Tend(clock_.SteadyNow());
-    status.Report(Situation());
+    status.Report(Situation(reported_problem_));
   }
 }
 
@@ -227,7 +277,7 @@ void GroundService::FeedWatchdog() {
   NotifyWatchdog();
 }
 
-GroundSituation GroundService::Situation() const {
+GroundSituation GroundService::Situation(std::optional<std::string> problem) const {
   GroundSituation situation{.link = subscriber_->stats(),
                             .feedback = board_.feedback.Get(),
                             .edge = board_.edge.Get(),
@@ -236,7 +286,7 @@ GroundSituation GroundService::Situation() const {
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
                             .scans_given_up = board_.scans_given_up,
-                            .problem = reported_problem_,
+                            .problem = std::move(problem),
                             .folder_problem = output_folder_.problem()};
   if (const auto tracker = board_.recording.Get()) situation.recording = (*tracker)->Get();
   return situation;

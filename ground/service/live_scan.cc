@@ -24,25 +24,27 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
 }
 
 Result<std::unique_ptr<LiveScan>> LiveScan::Create(const Clock& clock, const GroundOptions& options,
-                                                   const RigDescription& rig) {
+                                                   const RigDescription& rig, ConsoleFeed* feed) {
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, rig.rig, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-  return std::unique_ptr<LiveScan>(new LiveScan(clock, options, rig, std::move(*pipeline)));
+  return std::unique_ptr<LiveScan>(new LiveScan(clock, options, rig, std::move(*pipeline), feed));
 }
 
 LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
-                   std::unique_ptr<GroundPipeline> pipeline)
+                   std::unique_ptr<GroundPipeline> pipeline, ConsoleFeed* feed)
     : clock_(clock),
       options_(options),
       session_(rig.session),
       rig_(rig.rig),
       keeps_up_(options.live().expert().max_wait_s() > 0.0 && !rig.waits_for_ground),
       pipeline_(std::move(pipeline)),
+      feed_(feed),
       assembler_(rig.rig.thermal.has_value()),
       delay_check_(options.delay_check(), rig.rig, std::nullopt),
       feedback_(options, rig),
-      pace_(options.live().expert().feedback_hz()) {}
+      pace_(options.live().expert().feedback_hz()),
+      shown_scan_(feed == nullptr ? 0 : feed->scan()) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
   if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
@@ -66,6 +68,15 @@ void LiveScan::Add(const ExternalOdometrySample& sample) {
   ++odometry_poses_received_;
   next_odometry_pose_ = std::max(next_odometry_pose_, sample.number + 1);
   pipeline_->ProcessExternalOdometry(sample.pose);
+}
+
+void LiveScan::WhileIdle() {
+  if (feed_ != nullptr) feed_->WhileIdle(model());
+}
+
+void LiveScan::LeaveConsole() {
+  if (feed_ != nullptr) console_cost_ = feed_->cost();
+  feed_ = nullptr;
 }
 
 void LiveScan::FinishFrames(const std::function<void(double fraction)>& progress) {
@@ -139,13 +150,19 @@ void LiveScan::KeepUp(Nanoseconds queued) {
 void LiveScan::Process(const Assembler::Frame& frame) {
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
     NoteQueueTime(thermal->get());
+    if (feed_ != nullptr) feed_->Show(*thermal);
     pipeline_->ProcessThermal(*thermal);
     delay_check_.Add(*thermal, model());
     return;
   }
-  const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
+  const DepthFramePtr& shared = std::get<DepthFramePtr>(frame);
+  const DepthFrame& depth = *shared;
   NoteQueueTime(&depth);
-  pace_.Add(depth.header, pipeline_->ProcessDepth(depth));
+  const DepthReport report = pipeline_->ProcessDepth(depth);
+  pace_.Add(depth.header, report);
+  if (feed_ == nullptr) return;
+  feed_->Show(shared);
+  feed_->AfterDepth(depth.header, report, model());
 }
 
 std::optional<Feedback> LiveScan::TakeFeedback() {
@@ -177,6 +194,14 @@ void LiveScan::ThinkAhead() {
   const SteadyTime start = clock_.SteadyNow();
   feedback_.ThinkAhead(model());
   thinking_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
+}
+
+Json LiveScan::DescribeConsole() const {
+  if (!console_cost_) return nullptr;
+  Json json = DescribeStage(console_cost_->copying);
+  json["copied_blocks"] = console_cost_->copied_blocks;
+  json["largest_number_of_viewers"] = console_cost_->max_viewers;
+  return json;
 }
 
 Json LiveScan::DescribeFeedback() const {

@@ -16,6 +16,7 @@
 #include "common/time/clock.h"
 #include "ground/assembler/assembler.h"
 #include "ground/calibration/delay_check.h"
+#include "ground/console/console_feed.h"
 #include "ground/feedback/feedback_maker.h"
 #include "ground/feedback/feedback_pace.h"
 #include "ground/json/json.h"
@@ -35,8 +36,13 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
 class LiveScan {
  public:
   /// `clock` must outlive the scan; it is only asked how long frames waited.
+  /// `feed` hears what the console shows, if there is one; it must outlive the frames.
   static Result<std::unique_ptr<LiveScan>> Create(const Clock& clock, const GroundOptions& options,
-                                                  const RigDescription& rig);
+                                                  const RigDescription& rig,
+                                                  ConsoleFeed* feed = nullptr);
+
+  /// To be called on the reconstruction thread before the scan goes to another one.
+  void LeaveConsole();
 
   void Add(const ReceivedDepth& depth);
   void Add(const ReceivedThermal& thermal);
@@ -59,12 +65,20 @@ class LiveScan {
   ProcessorTimes processor_times() const;
   /// Coverage of the whole model as it goes into stats.json.
   Json DescribeFeedback() const;
+  /// Returns what the console has cost, as it goes into stats.json; null without one.
+  Json DescribeConsole() const;
+  /// To be called while no frame waits: lets the console go on.
+  void WhileIdle();
+  /// Returns whether WhileIdle has something to do.
+  bool has_more_to_show() const { return feed_ != nullptr && feed_->has_more(); }
 
   /// Returns how long frames waited from their arrival to their turn: in queues, and for the other
   /// stream.
   const StageStats& waiting() const { return waiting_; }
 
   std::uint64_t session() const { return session_; }
+  /// Returns the console's number of this scan; 0 without one.
+  std::uint64_t shown_scan() const { return shown_scan_; }
   /// The model's surface by how well it was measured.
   SurfaceAreas areas() const { return feedback_.areas(); }
   /// Returns what was left out to keep up.
@@ -81,7 +95,7 @@ class LiveScan {
 
  private:
   LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
-           std::unique_ptr<GroundPipeline> pipeline);
+           std::unique_ptr<GroundPipeline> pipeline, ConsoleFeed* feed);
   void Process(const Assembler::Frame& frame);
   void NoteQueueTime(const void* frame);
   /// Leaves work out while frames wait too long in the queue (live.expert.max_wait_s).
@@ -94,6 +108,7 @@ class LiveScan {
   const Rig rig_;
   const bool keeps_up_;
   std::unique_ptr<GroundPipeline> pipeline_;
+  ConsoleFeed* feed_;  ///< nullptr without a console, and after LeaveConsole.
   Assembler assembler_;
   DelayCheck delay_check_;
   FeedbackMaker feedback_;
@@ -106,6 +121,8 @@ class LiveScan {
   StageStats waiting_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool reported_behind_ = false;
+  std::uint64_t shown_scan_ = 0;
+  std::optional<ConsoleCost> console_cost_;  ///< After LeaveConsole.
   const ProcessorTimes processor_before_ = ReadProcessorTimes();
   std::optional<ProcessorTimes> processor_after_;  ///< Since the frames are finished.
 };

@@ -19,7 +19,7 @@ constexpr std::uint64_t kMinResultBytes = 4U << 20;
 
 void ReconstructionLoop::Run(SessionQueue& queue, const std::stop_token& stop) {
   stop_ = stop;
-  while (std::optional<SessionItem> item = queue.Pop(stop)) {
+  while (std::optional<SessionItem> item = Next(queue, stop)) {
     progress_.Busy(clock_.SteadyNow());
     // At a stop the frames that still wait are left out, counted; marks are handled, so that the
     // scan's end is.
@@ -34,12 +34,26 @@ void ReconstructionLoop::Run(SessionQueue& queue, const std::stop_token& stop) {
   progress_.Idle();
 }
 
+std::optional<SessionItem> ReconstructionLoop::Next(SessionQueue& queue,
+                                                    const std::stop_token& stop) {
+  constexpr Nanoseconds kIdle = std::chrono::milliseconds(100);
+  if (console_ == nullptr) return queue.Pop(stop);
+  for (;;) {
+    // Somebody may begin to look at a scan that rests.
+    std::optional<SessionItem> item = queue.PopFor(kIdle, stop);
+    if (item || (stop.stop_requested() && queue.size() == 0)) return item;
+    if (scan_ && scan_->has_more_to_show()) scan_->WhileIdle();
+  }
+}
+
 void ReconstructionLoop::Handle(const SessionStart& start) {
   End();
   start_ = start;
   started_ = true;
   LogCameras(start.rig);
-  Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
+  if (console_ != nullptr)
+    console_->BeginScan(start.rig, start.folder.filename().string(), start.folder.string());
+  Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig, console_);
   if (!scan) {
     LOG(Ground, Error) << "session " << start.rig.session
                        << " is recorded only: " << scan.error().message();
@@ -93,6 +107,7 @@ void ReconstructionLoop::EstimateResults() {
 void ReconstructionLoop::SendFeedback(const Feedback& feedback) {
   const BehindCounts behind = scan_->behind();
   board_.feedback.Set(feedback);
+  if (console_ != nullptr) console_->Add(feedback);
   board_.behind.Set(behind);
   Feedback sent = feedback;
   sent.frames_left_out = static_cast<std::uint32_t>(behind.thermal_frames);
@@ -111,6 +126,7 @@ void ReconstructionLoop::End() {
   board_.feedback.Take();
   board_.behind.Take();
   ended_result_bytes_ += std::exchange(result_bytes_, 0);
+  if (scan_) scan_->LeaveConsole();
   progress_.Idle();  // Enqueue may wait for the results of other scans.
   results_.Enqueue({std::move(start_), std::move(scan_), std::exchange(unprocessed_, 0)}, stop_);
   progress_.Busy(clock_.SteadyNow());

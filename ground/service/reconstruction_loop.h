@@ -22,6 +22,7 @@ struct ReconstructionSinks {
   ResultWriter& results;      ///< Scans that have ended.
   ScanBoard& board;
   ThreadProgress& progress;
+  ConsoleFeed* console = nullptr;  ///< Shows the scan, if there is a console.
 };
 
 /// Reconstructs one session after the other, hands ended ones over to have their results written,
@@ -36,7 +37,8 @@ class ReconstructionLoop {
         recording_(sinks.recording),
         results_(sinks.results),
         board_(sinks.board),
-        progress_(sinks.progress) {}
+        progress_(sinks.progress),
+        console_(sinks.console) {}
 
   /// Until stop is requested; frames that wait then are counted and left out.
   void Run(SessionQueue& queue, const std::stop_token& stop);
@@ -52,6 +54,8 @@ class ReconstructionLoop {
   void Handle(const ReceivedThermal& frame);
   void Handle(const Feedback& /*feedback*/) {}   // Comes from here.
   void Handle(const SessionClock& /*clock*/) {}  // For the recording.
+  /// Returns the next item; while there is none, does what is left for the console.
+  std::optional<SessionItem> Next(SessionQueue& queue, const std::stop_token& stop);
   template <typename Frame>
   void HandleFrame(const Frame& frame);
   void SendFeedback(const Feedback& feedback);
@@ -66,6 +70,7 @@ class ReconstructionLoop {
   ResultWriter& results_;
   ScanBoard& board_;
   ThreadProgress& progress_;
+  ConsoleFeed* const console_;
   std::stop_token stop_;
   bool started_ = false;  ///< A session runs; without a scan if none could be begun.
   SessionStart start_;    ///< How the session that runs began.

@@ -143,7 +143,7 @@ class ReconstructionLoopTest : public ::testing::Test {
                         [this](std::uint64_t session) { return subscriber_.counters(session); },
                         board_,
                         result_progress_,
-                        [this] { ++written_; }};
+                        [this](const std::unique_ptr<LiveScan>&) { ++written_; }};
   SessionQueue queue_{1000, OverflowPolicy::kBlock};
   ReconstructionLoop loop_{
       options_, clock_, {subscriber_, recording_, results_, board_, progress_}};

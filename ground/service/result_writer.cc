@@ -41,6 +41,8 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
   }
   DescribeCounters(counters, recording, link);
   stats["feedback"] = scan.DescribeFeedback();
+  if (Json console = scan.DescribeConsole(); !console.is_null())
+    stats["console"] = std::move(console);
   stats["processor"] = DescribeProcessor(scan.processor_times(), scan.model().trajectory);
   return stats;
 }
@@ -105,15 +107,15 @@ std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
 void ResultWriter::Run(const std::stop_token& stop) {
   while (std::optional<EndedScan> ended = Take(stop)) {
     progress_.Busy(clock_.SteadyNow());
-    FinishScan(std::move(*ended));
+    FinishScan(*ended);
     progress_.Idle();
     // The reserve on the disk was for these results; a scan under way says again what it needs.
     if (--board_.scans_being_written == 0) board_.result_bytes = 0;
-    written_();
+    written_(std::move(ended->scan));
   }
 }
 
-void ResultWriter::FinishScan(EndedScan ended) {
+void ResultWriter::FinishScan(EndedScan& ended) {
   if (!ended.scan) return;  // Recorded only.
   LiveScan& scan = *ended.scan;
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };

@@ -34,9 +34,10 @@ class ResultWriter {
  public:
   /// Returns what is known of a session's frames by now.
   using CountersSource = std::function<SessionCounters(std::uint64_t session)>;
-  /// `written` is called after each scan, whatever became of its results.
+  /// `written` is called after each scan, whatever became of its results; it gets the scan.
   ResultWriter(const GroundOptions& options, const Clock& clock, CountersSource counters,
-               ScanBoard& board, ThreadProgress& progress, std::function<void()> written)
+               ScanBoard& board, ThreadProgress& progress,
+               std::function<void(std::unique_ptr<LiveScan>)> written)
       : options_(options),
         clock_(clock),
         counters_(std::move(counters)),
@@ -64,7 +65,7 @@ class ResultWriter {
   void GiveUp(const EndedScan& ended);
   std::optional<EndedScan> Take(const std::stop_token& stop);
   /// Processes a scan's last frames, checks its delay and writes its results.
-  void FinishScan(EndedScan ended);
+  void FinishScan(EndedScan& ended);
   /// Writes into the scan's folder or, if that fails, into another. Returns the summary.
   Result<std::string> WriteWithFallback(LiveScan& scan, const DelayReport& delay, const Json& stats,
                                         const std::filesystem::path& folder);
@@ -74,7 +75,7 @@ class ResultWriter {
   const CountersSource counters_;
   ScanBoard& board_;
   ThreadProgress& progress_;
-  const std::function<void()> written_;
+  const std::function<void(std::unique_ptr<LiveScan>)> written_;
   Mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<EndedScan> waiting_ GUARDED_BY(mutex_);
