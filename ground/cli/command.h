@@ -48,6 +48,7 @@ void AddDevicesCommand(CLI::App& app, CommandBody& body);
 void AddDemoCommand(CLI::App& app, CommandBody& body);
 void AddExperimentCommand(CLI::App& app, CommandBody& body);
 void AddMeasureCommand(CLI::App& app, CommandBody& body);
+void AddViewCommand(CLI::App& app, CommandBody& body);
 void AddNucCommand(CLI::App& app, CommandBody& body);
 
 // Those of `isotherm calibrate`.

@@ -78,6 +78,7 @@ void AddCommands(CLI::App& app, CommandBody& body) {
   AddReconstructCommand(app, body);
   AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);
+  AddViewCommand(app, body);
   AddExportCommand(app, body);
   AddMeasureCommand(app, body);
   AddSimulateCommand(app, body);
