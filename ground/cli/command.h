@@ -49,6 +49,7 @@ void AddDemoCommand(CLI::App& app, CommandBody& body);
 void AddExperimentCommand(CLI::App& app, CommandBody& body);
 void AddMeasureCommand(CLI::App& app, CommandBody& body);
 void AddViewCommand(CLI::App& app, CommandBody& body);
+void AddReportCommand(CLI::App& app, CommandBody& body);
 void AddNucCommand(CLI::App& app, CommandBody& body);
 
 // Those of `isotherm calibrate`.

@@ -79,6 +79,7 @@ void AddCommands(CLI::App& app, CommandBody& body) {
   AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);
   AddViewCommand(app, body);
+  AddReportCommand(app, body);
   AddExportCommand(app, body);
   AddMeasureCommand(app, body);
   AddSimulateCommand(app, body);
