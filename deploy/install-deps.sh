@@ -30,8 +30,9 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
 # elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).
 # Emulated USB devices need umockdev; the units are started by a systemd in a container; sources are formatted by
 # clang-format 14.
+# The console's page is shown by Debian's Chromium.
 add_test_packages() {
-  packages="$packages umockdev libumockdev-dev systemd systemd-container clang-format iproute2"
+  packages="$packages umockdev libumockdev-dev systemd systemd-container clang-format iproute2 chromium"
   # Checks the configurations for it that we ship. Where services run it would take this computer's clock over from
   # another one, so there its test is skipped unless it is installed.
   [ -d /run/systemd/system ] || packages="$packages chrony"

@@ -1,0 +1,92 @@
+// Prints the figures of the console: what it costs, how fast the surface is there, what slow viewers change.
+//   run.sh figures.mjs BIN WORK
+import { readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import WebSocket from "ws";
+import { Stack, openBrowser, openPage, readJson, sleep, surface, until } from "./stack.mjs";
+import { slowProxy } from "./slow_proxy.mjs";
+
+const percentile = (values, p) => values.length === 0 ? NaN : [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(p / 100 * values.length))];
+
+/** Processor seconds of the threads of a process by name. */
+function threadSeconds(pid) {
+  const seconds = {};
+  for (const task of readdirSync(`/proc/${pid}/task`)) {
+    try {
+      const text = readFileSync(`/proc/${pid}/task/${task}/stat`, "utf8");
+      const name = text.slice(text.indexOf("(") + 1, text.lastIndexOf(")"));
+      const fields = text.slice(text.lastIndexOf(")") + 2).split(" ");
+      seconds[name] = (seconds[name] ?? 0) + (Number(fields[11]) + Number(fields[12])) / 100;
+    } catch {
+      // It has ended.
+    }
+  }
+  return seconds;
+}
+const rss_mb = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]) / 1024;
+
+/** A viewer without a page: reads all, counts bytes. */
+function reader(port) {
+  const socket = new WebSocket(`ws://127.0.0.1:${port}/live`, ["isotherm.live.v1"]);
+  socket.binaryType = "nodebuffer";
+  const counts = { bytes: 0, messages: 0, close: () => socket.close(), socket };
+  socket.on("message", (data) => { counts.bytes += data.length; ++counts.messages; });
+  socket.on("open", () => socket.send(Buffer.from([0x12, 0x02, 0x08, 0x01])));
+  socket.on("error", () => undefined);
+  return counts;
+}
+
+async function scan(name, viewers, body) {
+  const stack = new Stack();
+  await stack.startGround();
+  const browser = await openBrowser();
+  const page = viewers > 0 ? await openPage(browser, stack.url, { width: 1280, height: 800 }) : null;
+  const readers = Array.from({ length: Math.max(0, viewers - 1) }, () => reader(stack.port));
+  await sleep(500);
+  const before = threadSeconds(stack.ground.pid);
+  const start = Date.now();
+  stack.startEdge();
+  const extra = body ? await body(stack, page, browser) : {};
+  await stack.edge.ended;
+  const after = threadSeconds(stack.ground.pid);
+  const seconds = (Date.now() - start) / 1000;
+  const folder = await stack.scanFolder();
+  await until(() => readJson(join(folder, "stats.json")), "the results", 120000);
+  const stats = readJson(join(folder, "stats.json"));
+  const latencies = page ? await page.evaluate(() => isotherm.view.surface.latencies_ms) : [];
+  const shown = page ? await surface(page) : {};
+  const frame = page ? await page.evaluate(() => { const t = isotherm.view.frameTimes; return t.reduce((a, b) => a + b, 0) / t.length; }) : NaN;
+  console.log(`${name}: ${JSON.stringify({
+    viewers, seconds: Number(seconds.toFixed(1)),
+    copying_ms: stats.console && { p50: stats.console.p50_ms, p95: stats.console.p95_ms, p99: stats.console.p99_ms },
+    cores: { io: ((after["console-io"] - before["console-io"]) / seconds).toFixed(3), mesh: ((after.console - before.console) / seconds).toFixed(3) },
+    depth_frame_ms: stats.stages?.depth_frame, tracked: stats.frames?.depth, thermal: stats.frames?.thermal,
+    new_surface_ms: { p50: percentile(latencies, 50), p95: percentile(latencies, 95), groups: latencies.length },
+    triangles: shown.triangles, groups: shown.groups, draw_calls: shown.calls, frame_ms: Number(frame.toFixed(1)), rss_mb: Math.round(rss_mb(stack.ground.pid)),
+    reader_mbytes: readers.map(({ bytes }) => (bytes / 1e6).toFixed(1)), ...extra,
+  })}`);
+  for (const { close } of readers) close();
+  await browser.close();
+  await stack.stop();
+}
+
+const wanted = process.env.CONSOLE_FIGURES?.split(",") ?? ["none", "three", "slow", "ten", "reconnect"];
+if (wanted.includes("none")) await scan("nobody looks", 0);
+if (wanted.includes("three")) await scan("three viewers", 3);
+if (wanted.includes("slow")) await scan("a fast viewer beside one with 200 ms and 2 Mbit/s", 1, async (stack, page, browser) => {
+  const proxy = await slowProxy(stack.port, { bitsPerSecond: 2e6, delay_ms: 100 });
+  const slow = await openPage(browser, `http://127.0.0.1:${proxy.port}`, { width: 1024, height: 768 });
+  await stack.edge.ended;
+  const latencies = await slow.evaluate(() => isotherm.view.surface.latencies_ms);
+  return { slow_new_surface_ms: { p50: percentile(latencies, 50), p95: percentile(latencies, 95), groups: latencies.length } };
+});
+if (wanted.includes("ten")) await scan("ten viewers", 10);
+if (wanted.includes("reconnect")) await scan("fifty reconnects", 1, async (stack) => {
+  await until(async () => Number((await stack.state()).depth?.received ?? 0) > 30, "a scan");
+  const one = async () => { const r = reader(stack.port); await sleep(60); r.close(); await sleep(20); };
+  for (let i = 0; i < 5; ++i) await one();
+  const before = rss_mb(stack.ground.pid);
+  for (let i = 0; i < 50; ++i) await one();
+  await sleep(1000);
+  return { viewers_after: (await stack.state()).console.viewers, rss_growth_mb: Number((rss_mb(stack.ground.pid) - before).toFixed(1)) };
+});
