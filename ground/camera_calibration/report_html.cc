@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/base/escape_html.h"
 #include "ground/camera_calibration/calibration_report.h"
 #include "ground/camera_calibration/svg_plots.h"
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/escape_html.h"
+
 namespace isotherm {
 namespace {
 
@@ -32,22 +34,6 @@ std::string Open(double width, double height) {
 }
 
 }  // namespace
-
-std::string EscapeHtml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&') {
-      escaped += "&amp;";
-    } else if (c == '<') {
-      escaped += "&lt;";
-    } else if (c == '>') {
-      escaped += "&gt;";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::string SvgMap(const ProjectionMap& map, std::string_view unit) {
   const double height = kWidth * map.size_px.y() / map.size_px.x();

@@ -9,9 +9,6 @@
 
 namespace isotherm {
 
-/// Text with &, < and > as entities.
-std::string EscapeHtml(std::string_view text);
-
 /// The lengths of a map as a coloured image with a scale, SVG.
 std::string SvgMap(const ProjectionMap& map, std::string_view unit);
 

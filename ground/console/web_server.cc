@@ -183,7 +183,7 @@ class SocketConnection : public std::enable_shared_from_this<SocketConnection<St
     beast::get_lowest_layer(socket_).cancel();
   }
 
-  websocket::stream<Stream> socket_;
+  websocket::stream<Stream, /*deflateSupported=*/false> socket_;  ///< Surface is packed already.
   asio::steady_timer wake_timer_;
   AcceptedSocket accepted_;
   std::shared_ptr<ServerState> state_;

@@ -89,7 +89,7 @@ ShapeMeasurer::ShapeMeasurer(const TsdfVolume& tsdf, const ThermalVolume& therma
       options_(options),
       temperatures_(options.interpretation) {}
 
-std::optional<SurfaceHit> ShapeMeasurer::Find(const measuring::Anchor& anchor) {
+std::optional<ProbeHit> ShapeMeasurer::Find(const measuring::Anchor& anchor) {
   return probe_.Cast({.origin = T_model_world_ * ToEigen(anchor.origin()),
                       .direction = T_model_world_.linear() * ToEigen(anchor.direction())},
                      kAnchorReach_m);
@@ -109,7 +109,7 @@ void ShapeMeasurer::ToWorld(measuring::Statistics& statistics) const {
   *statistics.mutable_coldest() = InWorld(ToEigen(statistics.coldest()));
 }
 
-measuring::VoxelRecord ShapeMeasurer::RecordOf(const SurfaceHit& hit,
+measuring::VoxelRecord ShapeMeasurer::RecordOf(const ProbeHit& hit,
                                                const Interpretation& interpretation) {
   measuring::VoxelRecord record =
       RecordAt(probe_.tsdf(), probe_.thermal(), hit, interpretation, options_.limits);
@@ -121,7 +121,7 @@ measuring::VoxelRecord ShapeMeasurer::RecordOf(const SurfaceHit& hit,
 measuring::VoxelRecord ShapeMeasurer::Pick(const measuring::Anchor& ray,
                                            const measuring::ObjectParameters& parameters) {
   const auto interpretation = temperatures_.For(temperatures_.Complete(parameters));
-  const std::optional<SurfaceHit> hit = Find(ray);
+  const std::optional<ProbeHit> hit = Find(ray);
   if (!hit || !interpretation) return {};
   return RecordOf(*hit, **interpretation);
 }
@@ -173,12 +173,12 @@ measuring::MeasuredShape ShapeMeasurer::MeasureOne(const measuring::Shape& shape
   return measured;
 }
 
-std::optional<std::vector<SurfaceHit>> ShapeMeasurer::FindAll(const measuring::Shape& shape,
-                                                              std::size_t at_least,
-                                                              measuring::MeasuredShape& measured) {
-  std::vector<SurfaceHit> hits;
+std::optional<std::vector<ProbeHit>> ShapeMeasurer::FindAll(const measuring::Shape& shape,
+                                                            std::size_t at_least,
+                                                            measuring::MeasuredShape& measured) {
+  std::vector<ProbeHit> hits;
   for (const measuring::Anchor& anchor : shape.anchors()) {
-    const std::optional<SurfaceHit> hit = Find(anchor);
+    const std::optional<ProbeHit> hit = Find(anchor);
     if (!hit) {
       measured.set_problem(fmt::format("point {} is not on the surface", hits.size() + 1));
       return std::nullopt;

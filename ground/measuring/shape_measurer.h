@@ -39,8 +39,8 @@ class ShapeMeasurer {
   std::vector<measuring::MeasuredShape> Measure(const measuring::ShapeList& shapes);
 
  private:
-  std::optional<SurfaceHit> Find(const measuring::Anchor& anchor);
-  measuring::VoxelRecord RecordOf(const SurfaceHit& hit, const Interpretation& interpretation);
+  std::optional<ProbeHit> Find(const measuring::Anchor& anchor);
+  measuring::VoxelRecord RecordOf(const ProbeHit& hit, const Interpretation& interpretation);
   measuring::Vector3 InWorld(const Eigen::Vector3d& p_model) const;
   measuring::MeasuredShape MeasureOne(const measuring::Shape& shape);
   void MeasurePlace(const measuring::Shape& shape, const Interpretation& interpretation,
@@ -51,9 +51,8 @@ class ShapeMeasurer {
                    measuring::MeasuredShape& measured);
   void MeasureDistance(const measuring::Shape& shape, measuring::MeasuredShape& measured);
   /// The hits of all anchors; sets the problem if one of them finds nothing.
-  std::optional<std::vector<SurfaceHit>> FindAll(const measuring::Shape& shape,
-                                                 std::size_t at_least,
-                                                 measuring::MeasuredShape& measured);
+  std::optional<std::vector<ProbeHit>> FindAll(const measuring::Shape& shape, std::size_t at_least,
+                                               measuring::MeasuredShape& measured);
   void ToWorld(measuring::Statistics& statistics) const;
   void SetStatistics(const SurfaceSum& sum, measuring::MeasuredShape& measured) const;
 

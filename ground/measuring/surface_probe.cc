@@ -68,8 +68,8 @@ class BlockWalk {
 };
 
 /// The nearest triangle of a part that the ray meets.
-std::optional<SurfaceHit> CastAtPart(const Surface& part, const SurfaceRay& ray, double reach_m) {
-  std::optional<SurfaceHit> nearest;
+std::optional<ProbeHit> CastAtPart(const Surface& part, const SurfaceRay& ray, double reach_m) {
+  std::optional<ProbeHit> nearest;
   double best = reach_m;
   for (const Eigen::Vector3i& t : part.triangles) {
     const auto corner = [&](int i) -> const CloudPoint& {
@@ -119,7 +119,7 @@ const Surface& SurfaceProbe::PartAt(const GridIndex& block) {
   return place->second;
 }
 
-std::optional<SurfaceHit> SurfaceProbe::Cast(const SurfaceRay& ray, double reach_m) {
+std::optional<ProbeHit> SurfaceProbe::Cast(const SurfaceRay& ray, double reach_m) {
   if (!ray.origin.allFinite() || !ray.direction.allFinite() || ray.direction.isZero())
     return std::nullopt;
   const SurfaceRay unit{ray.origin, ray.direction.normalized()};

@@ -20,7 +20,7 @@ struct SurfaceRay {
 };
 
 /// Where a ray meets the surface.
-struct SurfaceHit {
+struct ProbeHit {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< Unit, towards the observed side.
   double distance_m = 0.0;                           ///< From the ray's origin.
@@ -34,7 +34,7 @@ class SurfaceProbe {
       : tsdf_(tsdf), thermal_(thermal), mesher_(options) {}
 
   /// The first point at which the ray meets the surface, from either side, within `reach_m`.
-  std::optional<SurfaceHit> Cast(const SurfaceRay& ray, double reach_m);
+  std::optional<ProbeHit> Cast(const SurfaceRay& ray, double reach_m);
   /// The part of the mesh whose cubes start in a block; empty where there is none.
   const Surface& PartAt(const GridIndex& block);
 

@@ -121,7 +121,7 @@ measuring::Vector3 ToMessage(const Eigen::Vector3f& vector) {
 }
 
 measuring::VoxelRecord RecordAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                                const SurfaceHit& hit, const Interpretation& interpretation,
+                                const ProbeHit& hit, const Interpretation& interpretation,
                                 const AssessmentLimits& limits) {
   measuring::VoxelRecord record;
   record.set_hit(true);

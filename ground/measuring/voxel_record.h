@@ -17,7 +17,7 @@ struct AssessmentLimits {
 /// All that the model knows about a place. `interpretation` makes the object temperature; points
 /// are in the coordinates of the model.
 measuring::VoxelRecord RecordAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                                const SurfaceHit& hit, const Interpretation& interpretation,
+                                const ProbeHit& hit, const Interpretation& interpretation,
                                 const AssessmentLimits& limits);
 
 /// "good", "acceptable", "bad" or "never".

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/base64.h"
+#include "common/base/escape_html.h"
 #include "ground/json/message_json.h"
 #include "ground/measuring/shape_store.h"
 #include "ground/report/report_table.h"
@@ -245,29 +246,6 @@ std::string AllNumbers(const ReportInputs& inputs, const std::vector<ObjectRow>&
 }
 
 }  // namespace
-
-std::string EscapeHtml(std::string_view text) {
-  std::string html;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
-  }
-  return html;
-}
 
 std::string EscapeCsv(std::string_view text) {
   // A spreadsheet takes what begins like this for a formula.

@@ -53,8 +53,7 @@ struct ReportFiles {
 };
 ReportFiles MakeReport(const ReportInputs& inputs);
 
-/// For texts in HTML and fields in CSV.
-std::string EscapeHtml(std::string_view text);
+/// Returns the text as a field of CSV.
 std::string EscapeCsv(std::string_view text);
 
 }  // namespace isotherm
