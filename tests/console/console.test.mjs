@@ -108,7 +108,8 @@ test("picks at 200 random places equal isotherm measure, bit for bit", async () 
       await new Promise((resolve) => setTimeout(resolve, 10));
       if (picked) found.push(picked);
     }
-    return found.map(({ anchor, record }) => ({ anchor: { origin: { ...anchor.origin }, direction: { ...anchor.direction } }, apparent: record.apparentCelsius,
+    const plain = ({ x, y, z }) => ({ x, y, z });
+    return found.map(({ anchor, record }) => ({ anchor: { origin: plain(anchor.origin), direction: plain(anchor.direction) }, apparent: record.apparentCelsius,
       object: record.objectCelsius, sigma: record.sigmaK, distance: record.distanceM, angle: record.angleDeg, age: record.nucAgeS, count: record.observations,
       quality: record.quality }));
   });
@@ -200,6 +201,11 @@ test("the page can be used by keyboard only", async () => {
     await page.keyboard.press("Tab");
   }
   for (const name of ["Follow", "All"]) assert.ok(reached.has(name), `${name} among ${[...reached].join("|")}`);
+});
+
+test("a page that is closed leaves", async () => {
+  await page.context().close();  // What software draws for a page takes the time of the next.
+  await until(async () => (await stack.state()).console.viewers === 0, "no viewer");
 });
 
 for (const [name, viewport] of Object.entries(sizes)) {
