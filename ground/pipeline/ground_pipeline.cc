@@ -23,6 +23,12 @@ int ThreadCount(const GroundOptions& options) {
 
 const StageStats* IfCalled(const StageStats& stats) { return stats.count() > 0 ? &stats : nullptr; }
 
+ThermalThinning Thinning(LoadShedding load_shedding) {
+  if (load_shedding == LoadShedding::kNone) return ThermalThinning::kNone;
+  return load_shedding == LoadShedding::kHalfThermal ? ThermalThinning::kEverySecond
+                                                     : ThermalThinning::kSparse;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
@@ -312,7 +318,6 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
 }
 
 std::optional<LeftOutReason> GroundPipeline::WhyNoThermal() const {
-  if (load_shedding_ >= LoadShedding::kNoThermal) return LeftOutReason::kBehind;
   if (!thermal_has_room_) return LeftOutReason::kDiskFull;
   return std::nullopt;
 }
@@ -331,7 +336,7 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
       .mean_depth_m = uncertainty.mean_depth_m(),
       .tsdf = *map.tsdf,
       .refusal = WhyNoThermal(),
-      .every_second = load_shedding_ == LoadShedding::kHalfThermal,
+      .thinning = Thinning(load_shedding_),
       .versions = &map.versions};
   certainties_.push_back({frame.time, static_cast<float>(tracked.surface_sigma_rad),
                           static_cast<float>(tracked.mean_depth_m)});

@@ -30,9 +30,9 @@ namespace isotherm {
 /// not see the same again.
 enum class LoadShedding : std::uint8_t {
   kNone,
-  kHalfThermal,  ///< Every second thermal frame is left out ("behind").
-  kNoThermal,    ///< All thermal frames are left out.
-  kEverySecond,  ///< So are they, and every second depth frame is tracked but not integrated.
+  kHalfThermal,    ///< Every second thermal frame is left out ("behind").
+  kSparseThermal,  ///< ThermalThinning::kSparse.
+  kEverySecond,    ///< So too, and every second depth frame is tracked but not integrated.
 };
 
 /// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame

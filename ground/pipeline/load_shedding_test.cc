@@ -10,20 +10,24 @@ namespace {
 
 using LoadSheddingTest = testing::PipelineFixture;
 
-TEST_F(LoadSheddingTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
+TEST_F(LoadSheddingTest, WithHardlyAnyTimeThermalFramesStayAtATenthOfASecond) {
   Depth(0);
-  pipeline_->set_load_shedding(LoadShedding::kNoThermal);
-  Thermal(0.5);
-  Depth(1);
-  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
-  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
-  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 2U);
+  pipeline_->set_load_shedding(LoadShedding::kSparseThermal);
+  for (int i = 1; i <= 9; ++i) {  // At 30 per second.
+    Thermal(i - 0.5);
+    Depth(i);
+    EXPECT_EQ(pipeline_->model().counts.thermal_fused, static_cast<std::uint64_t>((i + 2) / 3));
+  }
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 6U);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 10U);
   EXPECT_EQ(pipeline_->model().counts.depth_behind, 0U);
   pipeline_->set_load_shedding(LoadShedding::kNone);
-  Thermal(1.5);
-  Depth(2);
-  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 1U);
-  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
+  for (int i = 10; i <= 12; ++i) {
+    Thermal(i - 0.5);
+    Depth(i);
+  }
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 6U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 6U);
 }
 
 TEST_F(LoadSheddingTest, WithHalfTheTimeForThermalEverySecondFrameIsLeftOut) {
@@ -55,14 +59,14 @@ TEST_F(LoadSheddingTest, WithTimeForEverySecondFrameAllAreTracked) {
   EXPECT_EQ(counts.depth_tracked, 1U + kFrames);
   EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
   EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
-  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 0U + kFrames);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 5U) << "frames 0, 3 and 6 are fused";
   pipeline_->set_load_shedding(LoadShedding::kNone);
   for (int i = kFrames + 1; i <= kFrames + 3; ++i) {
     Thermal(i - 0.5);
     EXPECT_TRUE(Depth(i).integrated) << i;
   }
   EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
-  EXPECT_EQ(counts.thermal_fused, 3U);
+  EXPECT_EQ(counts.thermal_fused, 6U);
 }
 
 }  // namespace

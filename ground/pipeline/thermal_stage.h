@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <optional>
 
@@ -21,6 +22,15 @@
 
 namespace isotherm {
 
+/// Which thermal frames are left out because there is no time ("behind").
+enum class ThermalThinning : std::uint8_t {
+  kNone,
+  kEverySecond,
+  /// What follows the last one fused within kSparseInterval. Some stay however little time there
+  /// is: surface that is passed meanwhile would have no temperature at all.
+  kSparse,
+};
+
 /// The rig at a tracked depth frame, in the coordinates of `tsdf`.
 struct TrackedDepth {
   const Image<float>& depth_m;            ///< The frame itself; 0 = no return.
@@ -34,7 +44,7 @@ struct TrackedDepth {
   const TsdfVolume& tsdf;
   /// Says why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
-  bool every_second = false;          ///< There is time for every second thermal frame only.
+  ThermalThinning thinning = ThermalThinning::kNone;
   bool is_finished = false;           ///< CaptureConditions::surface_is_finished.
   BlockVersions* versions = nullptr;  ///< Hears which blocks got temperatures.
 };
@@ -80,6 +90,8 @@ class ThermalStage {
   double RegistrationSigmaPx(CaptureTime time, const TrackedDepth& depth) const;
   /// Motion of the thermal camera between the two depth frames.
   CameraMotion MotionAround(const TrackedDepth& depth) const;
+  /// Says which frame is next to go, so it is asked once for each frame.
+  bool IsThinnedOut(ThermalThinning thinning, CaptureTime time);
   /// nullopt: the frame can be fused.
   std::optional<LeftOutReason> WhyLeftOut(CaptureTime time, const TrackedDepth& depth) const;
   void Fuse(const Waiting& waiting, const TrackedDepth& depth, ThermalVolume& thermal,
@@ -98,7 +110,8 @@ class ThermalStage {
   LineOfSightOcclusion line_of_sight_occlusion_;
   NucEpochs nuc_epochs_;
   std::deque<Waiting> waiting_;
-  bool skip_next_ = false;  ///< With TrackedDepth::every_second.
+  bool skip_next_ = false;  ///< With ThermalThinning::kEverySecond.
+  std::optional<CaptureTime> last_fused_;
 };
 
 }  // namespace isotherm
