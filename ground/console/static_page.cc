@@ -55,7 +55,8 @@ void AddSafetyHeaders(WebReply& reply) {
 WebReply StaticPage::Answer(const WebRequest& request) const {
   if (request.method != "GET" && request.method != "HEAD")
     return TextReply(405, "only GET is answered here\n");
-  const std::string_view path = request.path == "/" ? "/index.html" : request.path;
+  const std::string_view asked = request.path;
+  const std::string_view path = asked == "/" ? "/index.html" : asked;
   const auto files = PageFiles();
   if (files.empty())
     return TextReply(404, "this program was built without the console's page; the data is there\n");
