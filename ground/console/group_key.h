@@ -16,6 +16,7 @@ struct GroupKey {
   int map = 0;
   int x = 0, y = 0, z = 0;
 
+  // clang-tidy 14 sees a null pointer in it. NOLINTNEXTLINE(modernize-use-nullptr)
   friend auto operator<=>(const GroupKey&, const GroupKey&) = default;
 };
 

@@ -32,7 +32,7 @@ class FakePeer final : public WebSocketPeer {
 class LiveSessionTest : public ::testing::Test {
  protected:
   LiveSessionTest() {
-    context_.post = [](std::function<void()> work) { work(); };
+    context_.post = [](const std::function<void()>& work) { work(); };
   }
   std::unique_ptr<LiveSession> Open(live::Role role = live::OPERATOR) {
     auto session = std::make_unique<LiveSession>(context_, role);
