@@ -22,11 +22,11 @@
 
 namespace isotherm {
 
-/// Which thermal frames are left out because there is no time ("behind").
+/// Says which thermal frames are left out for lack of time ("behind").
 enum class ThermalThinning : std::uint8_t {
   kNone,
   kEverySecond,
-  /// What follows the last one fused within kSparseInterval. Some stay however little time there
+  /// All that follow one that is fused within kSparseInterval. Some stay however little time there
   /// is: surface that is passed meanwhile would have no temperature at all.
   kSparse,
 };
