@@ -47,7 +47,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       shown_scan_(feed == nullptr ? 0 : feed->scan()) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
-  if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
+  if (keeps_up_) KeepUp(depth.queued);
   arrivals_[depth.frame.get()] = depth.arrival;
   assembler_.Add(depth.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -123,7 +123,8 @@ void LiveScan::NoteQueueTime(const void* frame) {
   if (arrivals_.size() > kMaxHeld) arrivals_.clear();
 }
 
-void LiveScan::KeepUp(Nanoseconds queued) {
+void LiveScan::KeepUp(CaptureTime queued_at) {
+  const Nanoseconds queued = clock_.Now() - queued_at;
   // Fractions of live.expert.max_wait_s. What the model misses least goes first: every second
   // thermal frame, then all but ten per second; depth frames are always tracked. All are well below
   // 1 because `queued` is not the whole wait: the assembler holds a frame until the next one of the
@@ -139,7 +140,7 @@ void LiveScan::KeepUp(Nanoseconds queued) {
                                : fraction > kSparseThermalFraction ? LoadShedding::kSparseThermal
                                : fraction > kHalfThermalFraction   ? LoadShedding::kHalfThermal
                                                                    : LoadShedding::kNone);
-  if (fraction <= kIntegrationFraction || reported_behind_) return;
+  if (fraction <= kIntegrationFraction || reported_behind_ || queued_at < begun_) return;
   reported_behind_ = true;
   LOG(Ground, Warning) << fmt::format(
       "a frame waited {:.0f} ms for its turn: work is left out to keep up (frames left out as "

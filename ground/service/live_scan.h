@@ -99,7 +99,7 @@ class LiveScan {
   void Process(const Assembler::Frame& frame);
   void NoteQueueTime(const void* frame);
   /// Leaves work out while frames wait too long in the queue (live.expert.max_wait_s).
-  void KeepUp(Nanoseconds queued);
+  void KeepUp(CaptureTime queued_at);
   void LogWhenDone();
 
   const Clock& clock_;
@@ -121,6 +121,7 @@ class LiveScan {
   StageStats waiting_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool reported_behind_ = false;
+  const CaptureTime begun_ = clock_.Now();  ///< Frames that came before waited for the scan itself.
   std::uint64_t shown_scan_ = 0;
   std::optional<ConsoleCost> console_cost_;  ///< After LeaveConsole.
   const ProcessorTimes processor_before_ = ReadProcessorTimes();
