@@ -15,6 +15,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "common/base/host_name.h"
+
 namespace isotherm {
 namespace {
 
@@ -135,10 +137,9 @@ Result<std::string> CertificateFingerprint(const fs::path& path) {
 
 std::vector<std::string> NamesOfThisComputer() {
   std::vector<std::string> names = {"localhost"};
-  char host[256] = {};
-  if (gethostname(host, sizeof(host) - 1) == 0 && host[0] != '\0') {
-    names.emplace_back(host);
-    names.push_back(std::string(host) + ".local");
+  if (const std::string host = HostName(); !host.empty()) {
+    names.push_back(host);
+    names.push_back(host + ".local");
   }
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) return names;

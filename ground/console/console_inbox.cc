@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/base/log.h"
+
 namespace isotherm {
 
 std::unique_ptr<BlockBatch> ConsoleInbox::TakeEmpty() {
@@ -27,7 +29,10 @@ void ConsoleInbox::GiveBack(std::unique_ptr<BlockBatch> batch, bool is_filled) {
 void ConsoleInbox::Add(ConsoleEvent event) {
   const MutexLock lock(mutex_);
   if (events_.size() == kMaxEvents) {
-    ++dropped_events_;
+    if (dropped_events_++ == 0) {
+      LOG(Ground, Warning) << "the console is behind and leaves out what it was to show, events="
+                           << kMaxEvents << ": the scan is not touched";
+    }
     return;
   }
   events_.push_back(std::move(event));
@@ -72,11 +77,6 @@ DepthFramePtr ConsoleInbox::TakeDepth() {
 ThermalFramePtr ConsoleInbox::TakeThermal() {
   const MutexLock lock(mutex_);
   return std::exchange(thermal_, nullptr);
-}
-
-std::uint64_t ConsoleInbox::dropped_events() const {
-  const MutexLock lock(mutex_);
-  return dropped_events_;
 }
 
 }  // namespace isotherm

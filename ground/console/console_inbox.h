@@ -84,7 +84,6 @@ class ConsoleInbox {
   std::atomic<int> raw_viewers{0};
   /// Something of the model was not copied yet.
   std::atomic<bool> is_behind{false};
-  std::uint64_t dropped_events() const;
 
  private:
   static constexpr std::size_t kBatches = 2;

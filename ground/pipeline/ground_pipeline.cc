@@ -317,11 +317,6 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   }
 }
 
-std::optional<LeftOutReason> GroundPipeline::WhyNoThermal() const {
-  if (!thermal_has_room_) return LeftOutReason::kDiskFull;
-  return std::nullopt;
-}
-
 void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame& frame) {
   if (!thermal_stage_ || !frame.is_believed()) return;
   const PoseUncertainty& uncertainty = tracker_.uncertainty();
@@ -335,7 +330,7 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
       .surface_sigma_rad = uncertainty.surface_sigma_m() / uncertainty.mean_depth_m(),
       .mean_depth_m = uncertainty.mean_depth_m(),
       .tsdf = *map.tsdf,
-      .refusal = WhyNoThermal(),
+      .refusal = thermal_has_room_ ? std::nullopt : std::optional(LeftOutReason::kDiskFull),
       .thinning = Thinning(load_shedding_),
       .versions = &map.versions};
   certainties_.push_back({frame.time, static_cast<float>(tracked.surface_sigma_rad),

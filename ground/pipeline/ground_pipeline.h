@@ -98,8 +98,6 @@ class GroundPipeline {
   bool AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth);
   /// Has what was spilled and comes into view read in the background.
   void ReadAheadAround(const RigidTransform& T_map_depth);
-  /// Returns why no thermal frame can be fused now, if so.
-  std::optional<LeftOutReason> WhyNoThermal() const;
   void RaycastFrom(const RigidTransform& T_map_depth);
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);

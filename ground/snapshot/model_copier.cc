@@ -122,19 +122,4 @@ bool ModelCopier::CopyMap(const SubMap& map, MapState& state, Turn& turn) {
   return turn.has_any();
 }
 
-std::int64_t ModelCopier::Pending(const Atlas& atlas) const {
-  std::int64_t pending = 0;
-  for (int i = 0; i < atlas.size(); ++i) {
-    const auto index = static_cast<std::size_t>(i);
-    const SubMap& map = atlas.map(i);
-    for (std::int32_t block = 0; block < map.tsdf->block_count(); ++block) {
-      const bool known =
-          index < maps_.size() && static_cast<std::size_t>(block) < maps_[index].copied.size();
-      const std::uint32_t copied = known ? maps_[index].copied[static_cast<std::size_t>(block)] : 0;
-      if (map.versions.At(block) != copied) ++pending;
-    }
-  }
-  return pending;
-}
-
 }  // namespace isotherm

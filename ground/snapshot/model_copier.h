@@ -33,8 +33,6 @@ class ModelCopier {
   /// one. Returns whether there are any.
   bool Copy(const Atlas& atlas, const RigidTransform& T_map_depth, const CopyBudget& budget,
             BlockBatch& batch);
-  /// Returns how many blocks of all sub-maps have changed since they were copied, or never were.
-  std::int64_t Pending(const Atlas& atlas) const;
 
  private:
   struct MapState {
