@@ -46,7 +46,7 @@ function start(name, args, log) {
 export class Stack {
   constructor() {
     this.folder = mkdtempSync(join(work ?? tmpdir(), "console-"));
-    this.domain = 100 + Math.floor(Math.random() * 100);
+    this.domain = 102 + Math.floor(Math.random() * 100); // The other tests take those below.
     this.edgeId = `console-${process.pid}`;
     this.children = [];
   }

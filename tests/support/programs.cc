@@ -2,7 +2,6 @@
 
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +11,7 @@
 
 #include "common/codec/codec.h"
 #include "common/frame/sensor_name.h"
+#include "common/transport/testing/test_domain.h"
 
 namespace isotherm::system_test {
 namespace {
@@ -43,7 +43,10 @@ std::filesystem::path Tool() { return Program("isotherm"); }
 std::filesystem::path EdgeDaemon() { return Program("isotherm-edge"); }
 std::filesystem::path GroundService() { return Program("isotherm-ground"); }
 
-int TestDomain() { return 100 + static_cast<int>(getpid() % 100); }
+int OwnDomain() {
+  static const TestDomain domain;
+  return domain.number();
+}
 
 std::vector<std::string> QuickModel() {
   return {"--set", "volume.voxel_size_m=0.006", "--set", "tsdf.expert.truncation_distance_m=0.024"};

@@ -16,9 +16,9 @@ std::filesystem::path Tool();
 std::filesystem::path EdgeDaemon();
 std::filesystem::path GroundService();
 
-/// A DDS domain for this test process, so that programs of other tests on this computer are not
-/// met.
-int TestDomain();
+/// The DDS domain of this test process, which no other one on this computer has: programs of other
+/// tests are not met.
+int OwnDomain();
 
 /// Far more than any program needs here: a limit for hanging, not a requirement.
 inline constexpr Seconds kPatience{120};

@@ -179,7 +179,7 @@ TEST_F(BadInputTest, APipeAsOptionRigResultOrCameraIsRefusedAtOnceAndNamed) {
   for (const char* option : {"--config", "--rig", "--recording"}) {
     const Finished edge =
         RunToEnd({EdgeDaemon(),
-                  {"--domain", std::to_string(TestDomain()), "--exit-at-end", option, pipe},
+                  {"--domain", std::to_string(OwnDomain()), "--exit-at-end", option, pipe},
                   {}},
                  kPatience);
     EXPECT_GT(edge.status, 0) << option;

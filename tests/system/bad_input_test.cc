@@ -21,8 +21,8 @@ TEST_F(BadInputTest, F57TheEdgeWarnsOfACalibrationThatCannotBeRight) {
   WriteRig(dataset_, "1000", "50");
   const Finished edge = RunToEnd(
       {EdgeDaemon(),
-       {"--domain", std::to_string(TestDomain()), "--recording", Recording(), "--rate", "0",
-        "--set", "source.loops=1", "--exit-at-end", "--rig", dataset_.path() / "rig.textproto"},
+       {"--domain", std::to_string(OwnDomain()), "--recording", Recording(), "--rate", "0", "--set",
+        "source.loops=1", "--exit-at-end", "--rig", dataset_.path() / "rig.textproto"},
        {}},
       kPatience);
   EXPECT_THAT(edge.output, HasSubstr("as millimetres they would be 0.05 m"));
@@ -143,7 +143,7 @@ TEST_F(BadInputTest, OutputThatCannotBeCreatedIsNamed) {
   ExpectOneSentence(RunTool({"reconstruct", Recording(), "-o", below}), cannot_create, "file");
   ExpectOneSentence(RunTool({"import", dataset_.path(), "-o", below + ".mcap"}), cannot_create,
                     "file");
-  const std::string domain = std::to_string(TestDomain());
+  const std::string domain = std::to_string(OwnDomain());
   // As a service it waits for the folder.
   ExpectOneSentence(
       RunToEnd({GroundService(), {"--domain", domain, "--output", below, "--once"}, {}}, kPatience),
@@ -210,11 +210,11 @@ TEST_F(BadInputTest, ABadCalibrationHasOneExitStatusEverywhere) {
   const Finished import =
       RunTool({"import", dataset_.path(), "-o", dataset_.root() / "other.mcap"});
   EXPECT_EQ(import.status, kBadData) << import.output;
-  const Finished edge = RunToEnd(
-      {EdgeDaemon(),
-       {"--domain", std::to_string(TestDomain()), "--recording", Recording(), "--rig", rig},
-       {}},
-      kPatience);
+  const Finished edge =
+      RunToEnd({EdgeDaemon(),
+                {"--domain", std::to_string(OwnDomain()), "--recording", Recording(), "--rig", rig},
+                {}},
+               kPatience);
   EXPECT_EQ(edge.status, kBadData) << edge.output;
 }
 

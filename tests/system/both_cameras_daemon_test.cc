@@ -97,7 +97,7 @@ class BothCamerasTest : public ::testing::Test {
   Command Edge() const {
     return {EdgeDaemon(),
             {"--source", "cameras", "--record", file_.string(), "--domain",
-             std::to_string(TestDomain()), "--set", "source.thermal_camera.driver=OPTRIS_SDK",
+             std::to_string(OwnDomain()), "--set", "source.thermal_camera.driver=OPTRIS_SDK",
              "--set", "source.thermal_camera.expert.optris_library=\"" FAKE_OPTRIS "\"", "--set",
              "source.thermal_camera.expert.optris_config=\"" + config_.string() + "\"", "--set",
              // The emulated bus answers for /dev itself, also to those who only want to name it.
@@ -113,7 +113,7 @@ class BothCamerasTest : public ::testing::Test {
     ASSERT_TRUE(edge.WaitForOutput(kThermalWorks, kPatience)) << edge.output();
   }
   static Finished Nuc() {
-    return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(TestDomain())}, {}, {}},
+    return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(OwnDomain())}, {}, {}},
                     kPatience);
   }
   RecordingContent End(Process& edge) {

@@ -28,7 +28,7 @@ class ClockTest : public ::testing::Test {
   std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
 
   void StartGround() {
-    std::vector<std::string> arguments = {"--once", "--domain", std::to_string(TestDomain()),
+    std::vector<std::string> arguments = {"--once", "--domain", std::to_string(OwnDomain()),
                                           "--output", Path("ground")};
     for (const std::string& argument : QuickModel()) arguments.push_back(argument);
     ground_ = std::make_unique<Process>(
@@ -43,7 +43,7 @@ class ClockTest : public ::testing::Test {
     StartGround();
     Command edge{EdgeDaemon(),
                  {"--recording", shared_->path() / "source.mcap", "--domain",
-                  std::to_string(TestDomain()), "--record", Path("edge.mcap"), "--rate", "1",
+                  std::to_string(OwnDomain()), "--record", Path("edge.mcap"), "--rate", "1",
                   "--wait-for-ground", "--set", "source.loops=0"},
                  {std::string("LD_PRELOAD=") + SHIFTED_CLOCK,
                   "CLOCK_SHIFT_MS=" + std::to_string(ahead_ms), "CLOCK_STATE=" + clock_state_}};

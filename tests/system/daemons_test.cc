@@ -45,7 +45,7 @@ class DaemonsTest : public ::testing::Test {
   /// As fast as the ground takes it, so that the test needs no more time than the work does.
   Command Edge(const std::vector<std::string>& more = {}) const {
     return {EdgeDaemon(),
-            Joined({"--recording", Source(), "--domain", std::to_string(TestDomain()), "--record",
+            Joined({"--recording", Source(), "--domain", std::to_string(OwnDomain()), "--record",
                     Path("edge.mcap")},
                    more),
             {}};
@@ -57,7 +57,7 @@ class DaemonsTest : public ::testing::Test {
   Command Ground(const std::vector<std::string>& more = {}) const {
     return {
         GroundService(),
-        Joined(Joined({"--domain", std::to_string(TestDomain()), "--output", Path("ground")}, more),
+        Joined(Joined({"--domain", std::to_string(OwnDomain()), "--output", Path("ground")}, more),
                QuickModel()),
         {}};
   }

@@ -26,7 +26,7 @@ class CamerasTest : public ::testing::Test {
   Command Edge(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {
         "--source", "cameras", "--set", "source.thermal_camera.enabled=false", "--domain",
-        std::to_string(TestDomain()),
+        std::to_string(OwnDomain()),
         // The fake driver reads there what it shall do.
         "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"", "--set",
         "source.camera_sandbox.expert.read=\"" + camera_.folder().string() + "\""};

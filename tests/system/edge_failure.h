@@ -39,7 +39,7 @@ class EdgeFailureTest : public ::testing::Test {
   EdgeFailureTest() { WriteSmallScan(scan_); }
 
   Command Edge(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--domain", std::to_string(TestDomain())});
+    arguments.insert(arguments.end(), {"--domain", std::to_string(OwnDomain())});
     return {EdgeDaemon(),
             std::move(arguments),
             {"LD_LIBRARY_PATH=" FAKE_OPENNI, manager_.environment(), kWatchdog},

@@ -195,7 +195,7 @@ class EdgeLoadTest : public ::testing::Test {
   };
 
   void StartPublishing() {
-    auto participant = Participant::Create(environment_, TestDomain());
+    auto participant = Participant::Create(environment_, OwnDomain());
     ASSERT_TRUE(participant.has_value());
     participant_ = std::move(*participant);
     PublisherOptions publishing;
@@ -371,7 +371,7 @@ class EdgeLoadTest : public ::testing::Test {
 
 TEST_F(EdgeLoadTest, EachFrameIsAccountedForAndMemoryIsBounded) {
   UseSmallPages();  // As isotherm-edge does.
-  Process sink({FRAME_SINK, {std::to_string(TestDomain())}, {}, {}});
+  Process sink({FRAME_SINK, {std::to_string(OwnDomain())}, {}, {}});
   ASSERT_TRUE(sink.WaitForOutput("listening", kPatience));
   ASSERT_NO_FATAL_FAILURE(StartPublishing());
   const std::unique_ptr<CameraPair> cameras = MakeCameras();

@@ -109,7 +109,7 @@ int Count(const std::string& text, const std::string& words) {
 
 TEST(FloodTest, F64MalformedPacketsLeaveALineInTenSecondsWithTheirNumberAndNothingElse) {
   const testing::TemporaryDirectory folder;
-  const std::string domain = std::to_string(TestDomain());
+  const std::string domain = std::to_string(OwnDomain());
   SimulateScan(folder.path() / "source.mcap", 0.2);
   Process edge({EdgeDaemon(),
                 {"--recording", folder.path() / "source.mcap", "--domain", domain, "--record",
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Names, NameFloodTest, ::testing::Bool(), [](const auto&
 TEST_P(NameFloodTest, F62EverNewNamesDoNotMakeEitherDaemonGrow) {
   const testing::TemporaryDirectory folder;
   const auto path = [&](const char* name) { return folder.path() / name; };
-  const std::string domain = std::to_string(TestDomain());
+  const std::string domain = std::to_string(OwnDomain());
   SimulateScan(path("source.mcap"), 0.2);
   // Both wait: the ground for this rig, the edge for a ground that follows it.
   Process edge({EdgeDaemon(),

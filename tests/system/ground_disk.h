@@ -40,14 +40,13 @@ class GroundDiskTest : public ::testing::Test {
   /// As a camera would.
   static Command EndlessEdge() {
     return {EdgeDaemon(),
-            {"--recording", Source(), "--domain", std::to_string(TestDomain()), "--set",
+            {"--recording", Source(), "--domain", std::to_string(OwnDomain()), "--set",
              "source.loops=0"},
             {}};
   }
   Command Ground(const std::vector<std::string>& more = {}) const {
-    Command ground{GroundService(),
-                   {"--domain", std::to_string(TestDomain()), "--output", Path("ground")},
-                   {}};
+    Command ground{
+        GroundService(), {"--domain", std::to_string(OwnDomain()), "--output", Path("ground")}, {}};
     const std::vector<std::string> quick = QuickModel();
     ground.arguments.insert(ground.arguments.end(), more.begin(), more.end());
     ground.arguments.insert(ground.arguments.end(), quick.begin(), quick.end());

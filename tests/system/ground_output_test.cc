@@ -146,7 +146,7 @@ TEST_F(GroundOutputTest, F57ACalibrationThatCannotBeRightIsAWarningOfTheGroundTo
   const auto edge =
       RunToEnd({EdgeDaemon(),
                 {"--recording", scan, "--rig", Path("rig.textproto"), "--domain",
-                 std::to_string(TestDomain()), "--rate", "0", "--wait-for-ground", "--exit-at-end"},
+                 std::to_string(OwnDomain()), "--rate", "0", "--wait-for-ground", "--exit-at-end"},
                 {}},
                kPatience);
   EXPECT_EQ(edge.status, 0) << edge.output;

@@ -55,7 +55,7 @@ shutter { interval_s: 0 first_s: 100 })",
 
   /// Edge and ground, as fast as the ground takes it.
   void Scan() const {
-    const std::string domain = std::to_string(TestDomain());
+    const std::string domain = std::to_string(OwnDomain());
     std::vector<std::string> arguments = {"--domain", domain, "--output", Path("ground"), "--once"};
     for (const std::string& option : QuickModel()) arguments.push_back(option);
     Process ground({GroundService(), arguments, {}});

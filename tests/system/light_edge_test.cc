@@ -114,7 +114,7 @@ TEST(LightEdgeTest, TheRunningEdgeHasOpenedNoMore) {
   SimulateScan(folder.path() / "scan.mcap", 0.3);
   Process edge({EdgeDaemon(),
                 {"--recording", folder.path() / "scan.mcap", "--domain",
-                 std::to_string(TestDomain()), "--wait-for-ground"},
+                 std::to_string(OwnDomain()), "--wait-for-ground"},
                 {}});
   ASSERT_TRUE(edge.WaitForOutput("waiting for a ground station", kPatience)) << edge.output();
   const std::set<std::string> libraries = LibrariesOf(edge.pid());

@@ -25,7 +25,7 @@ class NucTest : public ::testing::Test {
  protected:
   /// A simulated scan that is played again and again; small, since only the shutter matters.
   Command Edge(std::vector<std::string> settings) const {
-    Command edge{EdgeDaemon(), {"--scene", "plane", "--domain", std::to_string(TestDomain())}, {}};
+    Command edge{EdgeDaemon(), {"--scene", "plane", "--domain", std::to_string(OwnDomain())}, {}};
     edge.arguments.insert(edge.arguments.end(), {"--record", folder_.path() / "edge.mcap"});
     settings.insert(
         settings.begin(),
@@ -38,8 +38,7 @@ class NucTest : public ::testing::Test {
   }
   static Finished Nuc(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "nuc");
-    arguments.insert(arguments.end(),
-                     {"--domain", std::to_string(TestDomain()), "--timeout", "60"});
+    arguments.insert(arguments.end(), {"--domain", std::to_string(OwnDomain()), "--timeout", "60"});
     return RunToEnd({Tool(), std::move(arguments), {}}, kPatience);
   }
   /// Returns what the thermal frames of the edge's recording say, and its log.
@@ -136,7 +135,7 @@ TEST_F(NucTest, F08AShutterThatStaysClosedIsReportedAndTheScanGoesOn) {
 
 TEST(NucCommandTest, WithoutARigItSaysWhatToCheck) {
   const Finished nuc = RunToEnd(
-      {Tool(), {"nuc", "--domain", std::to_string(TestDomain()), "--timeout", "0.5", "--now"}, {}},
+      {Tool(), {"nuc", "--domain", std::to_string(OwnDomain()), "--timeout", "0.5", "--now"}, {}},
       kPatience);
   EXPECT_EQ(nuc.status, kRefused);
   EXPECT_THAT(nuc.output, HasSubstr("no status from any rig"));

@@ -39,7 +39,7 @@ class ShortTypesTest : public ::testing::Test {
   ShortTypesTest() { SimulateScan(Path("source.mcap"), kScan_s); }
 
   std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
-  static std::string Domain() { return std::to_string(TestDomain()); }
+  static std::string Domain() { return std::to_string(OwnDomain()); }
   Command Edge() const {
     return {EdgeDaemon(),
             {"--recording", Path("source.mcap"), "--domain", Domain(), "--record",

@@ -45,7 +45,7 @@ class ThermalDaemonTest : public ::testing::Test {
         "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"", "--set",
         // The emulated bus answers for /dev itself, also to those who only want to name it.
         "source.camera_sandbox.expert.enabled=false", "--record", file_.string(), "--domain",
-        std::to_string(TestDomain())};
+        std::to_string(OwnDomain())};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {}, {}};
   }
@@ -86,7 +86,7 @@ class ThermalDaemonTest : public ::testing::Test {
     EXPECT_GT(frames, 0);
   }
   static Finished Nuc() {
-    return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(TestDomain())}, {}, {}},
+    return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(OwnDomain())}, {}, {}},
                     kPatience);
   }
   /// No image may be valid that repeats the one before more than three times in a row.
@@ -319,7 +319,7 @@ TEST_F(ThermalDaemonTest, GroundSaysThatThereAreCountsOnlyAndGeometryGoesOn) {
   bus_->Plug(std::make_shared<EmulatedSeek>("f"));
   Command ground_command{
       GroundService(),
-      {"--once", "--domain", std::to_string(TestDomain()), "--output", folder_.path() / "ground"},
+      {"--once", "--domain", std::to_string(OwnDomain()), "--output", folder_.path() / "ground"},
       {},
       {}};
   const std::vector<std::string> quick = QuickModel();

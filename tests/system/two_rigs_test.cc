@@ -33,7 +33,7 @@ class TwoRigsTest : public ::testing::Test {
     std::vector<std::string> arguments = {"--recording",
                                           shared_->path() / "source.mcap",
                                           "--domain",
-                                          std::to_string(TestDomain()),
+                                          std::to_string(OwnDomain()),
                                           "--record",
                                           Path(name + ".mcap"),
                                           "--exit-at-end",
@@ -43,7 +43,7 @@ class TwoRigsTest : public ::testing::Test {
     return {EdgeDaemon(), arguments, {}};
   }
   Command Ground(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"--domain", std::to_string(TestDomain()), "--output",
+    std::vector<std::string> arguments = {"--domain", std::to_string(OwnDomain()), "--output",
                                           Path("ground")};
     const std::vector<std::string> quick = QuickModel();
     arguments.insert(arguments.end(), quick.begin(), quick.end());

@@ -18,7 +18,8 @@ class TestDomain {
  public:
   TestDomain() {
     constexpr int kFirst = 20;  // Low ones are for people.
-    constexpr int kCount = 200;
+    // The ports of domains above 101 are those that Linux hands to other sockets (from 32768 on).
+    constexpr int kCount = 80;
     for (int i = 0; i < kCount; ++i) {
       number_ = kFirst + (static_cast<int>(getpid()) + i) % kCount;
       if (Take("isotherm-test-domain-" + std::to_string(number_))) return;
