@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
-#include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -13,22 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "common/base/exit_deadline.h"
 #include "common/base/log.h"
-#include "common/base/pause.h"
-#include "common/base/processor_time.h"
 #include "common/doubts/doubts.h"
 #include "common/rig/rig_calibration.h"
 #include "common/transport/join_domain.h"
-#include "edge/daemon/edge_monitor.h"
+#include "edge/daemon/capture.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
 #include "edge/daemon/open_source.h"
-#include "edge/daemon/rig_announcer.h"
 #include "edge/daemon/session_start.h"
 #include "edge/daemon/stop_limits.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/pipeline/edge_pipeline.h"
 #include "edge/publisher/late_publisher.h"
 #include "edge/spool/recording_files.h"
 #include "edge/spool/recording_name.h"
@@ -37,9 +28,6 @@ namespace isotherm {
 namespace {
 
 using std::chrono::milliseconds;
-
-// EX_CANTCREAT of sysexits.h: the recording could not be created or not be finished.
-constexpr int kExitRecording = 73;
 
 int Fail(const Status& status) {
   LOG(Edge, Error) << status.message();
@@ -122,150 +110,6 @@ Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
   return Publisher::Create(participant, clock, publisher);
 }
 
-void WaitForGround(Publisher& publisher, const std::stop_token& stop) {
-  LOG(Edge, Info) << "waiting for a ground station";
-  while (!stop.stop_requested() && !publisher.WaitForGround(milliseconds(500), stop)) {
-    NotifyWatchdog();
-  }
-}
-
-/// Lets the ground confirm what was sent. False if it did not in time.
-bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
-           const std::stop_token& stop) {
-  const SteadyTime start = clock.SteadyNow();
-  while (!publisher.Drain(stop_limits::kTick)) {
-    const Nanoseconds configured = FromSeconds(options.expert().linger_s());
-    const Nanoseconds limit =
-        stop.stop_requested() ? std::min(configured, stop_limits::kLingerAfterSignal) : configured;
-    if (clock.SteadyNow() - start >= limit) return false;
-  }
-  return true;
-}
-
-void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, EdgeMonitor& monitor,
-                     RigAnnouncer& announcer, const std::stop_token& stop) {
-  bool told = false;
-  while (!stop.stop_requested()) {
-    monitor.Tick();
-    announcer.Tick();
-    if (pipeline.finished()) {
-      if (options.exit_at_end()) return;
-      if (!std::exchange(told, true)) {
-        LOG(Edge, Info) << "the source has ended; waiting for a signal to leave";
-      }
-    }
-    Pause(stop, stop_limits::kTick);
-  }
-}
-
-/// Ends the process in time once it was told to leave, whatever it is at then.
-struct Leaving {
-  ExitDeadline deadline;
-  std::atomic<int> status_if_stuck{0};
-};
-
-/// Holds what a capture works with from its beginning to its end.
-struct CaptureParts {
-  const EdgeOptions& options;
-  const EdgeSession& session;
-  FrameSource& source;
-  FrameCounters& counters;
-  CameraHealth& health;
-  Publisher& publisher;
-  Leaving& leaving;
-  const Clock& clock;
-  const std::stop_token& stop;
-};
-
-/// Holds what had been used when a capture began.
-struct CaptureBegin {
-  SteadyTime time;
-  ProcessorTimes processor;
-};
-
-/// Returns what the capture has cost, to be asked for while its threads still live.
-std::string ProcessorText(const CaptureBegin& begin, SteadyTime now) {
-  return "processor " + ToText(ReadProcessorTimes() - begin.processor, ToSeconds(now - begin.time));
-}
-
-/// Completes that, once the processes of cameras have ended.
-void PrintProcessorText(const std::string& text) {
-  const double cameras_s = ProcessorTimeOfChildren_s();
-  std::fputs(text.c_str(), stdout);
-  std::fputs(
-      cameras_s > 0.0 ? fmt::format("; processes of cameras {:.1f} s\n", cameras_s).c_str() : "\n",
-      stdout);
-  std::fflush(stdout);
-}
-
-void PrintSummary(const CaptureParts& parts, const EdgePipeline& pipeline, bool recording) {
-  std::fputs(
-      Summary(parts.counters, recording, parts.publisher.receipt(), pipeline.feedback().latency())
-          .c_str(),
-      stdout);
-  std::fputs(
-      CameraSummary(parts.health.Get(Sensor::kDepth), parts.health.Get(Sensor::kThermal)).c_str(),
-      stdout);
-  std::fflush(stdout);
-}
-
-/// Ends the recording, then the link, each in its time; `say` tells what was done. The process's
-/// exit status.
-int Leave(const CaptureParts& parts, EdgePipeline& pipeline, EdgeMonitor& monitor,
-          const std::function<void()>& say) {
-  ExitDeadline& deadline = parts.leaving.deadline;
-  const LinkOptions& link = parts.options.link();
-  // With a signal the time already runs.
-  deadline.ArmFirst(stop_limits::kCameras + stop_limits::kDisk, kExitRecording, "a camera", say);
-  const bool cameras_ended = pipeline.StopCapture(stop_limits::kCameras);
-  if (!cameras_ended) {
-    LOG(Edge, Error) << "a camera did not end within " << ToSeconds(stop_limits::kCameras)
-                     << " s; leaving without it";
-  }
-  deadline.Arm(stop_limits::kDisk, kExitRecording, "the disk", say);
-  const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
-  const Nanoseconds linger =
-      parts.stop.stop_requested() ? Nanoseconds(0) : FromSeconds(link.expert().linger_s());
-  deadline.Arm(stop_limits::kLink + linger, status, "the network", say);
-  static_cast<void>(pipeline.Stop());
-  monitor.PublishEnd();
-  if (!Drain(parts.publisher, link, parts.clock, parts.stop)) {
-    LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
-  }
-  deadline.Arm(stop_limits::kMiddleware, status,
-               cameras_ended ? "the middleware or standard output" : "a camera");
-  say();
-  return status;
-}
-
-/// Captures until told to leave, then passes on what is under way. The process's exit status.
-int Capture(const CaptureParts& parts, std::unique_ptr<Spool> spool) {
-  const auto& [options, session, source, counters, health, publisher, leaving, clock, stop] = parts;
-  const bool recording = spool != nullptr;
-  if (recording) leaving.status_if_stuck = kExitRecording;
-  const CaptureBegin begin{clock.SteadyNow(), ReadProcessorTimes()};
-  EdgePipeline pipeline(options, {source, publisher, counters, health, clock, std::move(spool),
-                                  session.session(), session.rig_thermal_delay_s});
-  pipeline.StartReceiving();
-  NotifyReady(fmt::format("capturing from {}", source.name()));
-  LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
-                  << " domain=" << options.link().domain() << " session=" << session.session();
-  if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
-
-  pipeline.StartCapture();
-  EdgeMonitor monitor({clock, pipeline, publisher, counters, health},
-                      options.display().image_file());
-  RigAnnouncer announcer(options, session, health, publisher,
-                         [&pipeline](RigUpdate update) { pipeline.RecordRig(std::move(update)); });
-  RunUntilStopped(options, pipeline, monitor, announcer, stop);
-  NotifyStopping();
-  return Leave(parts, pipeline, monitor,
-               [&parts, &pipeline, recording, processor = ProcessorText(begin, clock.SteadyNow())] {
-                 PrintSummary(parts, pipeline, recording);
-                 PrintProcessorText(processor);
-               });
-}
-
 /// A participant and what publishes through it; the first must outlive the second.
 struct Link {
   std::unique_ptr<Participant> participant;
@@ -301,6 +145,38 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
   return OkStatus();
 }
 
+/// Opens the source and runs a scan of it. Joins the link if that has not been done.
+CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& environment,
+                   const Clock& clock, const std::optional<Rig>& calibration,
+                   const std::stop_token& stop, Leaving& leaving, Link& link) {
+  FrameCounters counters;
+  CameraHealth health;
+  const Result<std::unique_ptr<FrameSource>> source =
+      OpenSource(options, {clock, counters, health, calibration, stop});
+  if (!source) return {.status = stop.stop_requested() ? 0 : Fail(source.error())};
+  const std::optional<Rig> rig = calibration ? calibration : (*source)->rig();
+  LogRig(rig);
+  LogCounts((*source)->cameras());
+  const EdgeSession session{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
+                            rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
+  LogClock(options, session.clock);
+
+  if (!link.publisher) {
+    const Status connected = Connect(options, environment, clock, link);
+    if (!connected.ok()) return {.status = Fail(connected)};
+  }
+  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, session, clock, counters);
+  if (!spool) {
+    LOG(Edge, Error) << spool.error().message();
+    return {.status = kExitRecording};
+  }
+  const Status begun = link.publisher->BeginSession(DescribeRig(options, session));
+  if (!begun.ok()) return {.status = Fail(begun)};
+  return Capture(
+      {options, session, **source, counters, health, *link.publisher, leaving, clock, stop},
+      std::move(*spool));
+}
+
 }  // namespace
 
 int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment, const Clock& clock,
@@ -311,34 +187,15 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
     leaving.deadline.Bound(stop_limits::kTotal);
     leaving.deadline.ArmFirst(stop_limits::kDisk, leaving.status_if_stuck, "what was under way");
   });
-  FrameCounters counters;
-  CameraHealth health;
   const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
   if (!calibration) return Fail(calibration.error());
-  const Result<std::unique_ptr<FrameSource>> source =
-      OpenSource(options, {clock, counters, health, *calibration, stop});
-  if (!source) return stop.stop_requested() ? 0 : Fail(source.error());
-  const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
-  LogRig(rig);
-  LogCounts((*source)->cameras());
-  const EdgeSession start{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
-                          rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
-  LogClock(options, start.clock);
-
   Link link;
-  if (const Status connected = Connect(options, environment, clock, link); !connected.ok()) {
-    return Fail(connected);
+  CaptureEnd end{.another_scan = true};
+  while (end.another_scan) {
+    const CaptureEnd scan = RunScan(options, environment, clock, *calibration, stop, leaving, link);
+    end = {end.status != 0 ? end.status : scan.status, scan.another_scan};
   }
-  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, start, clock, counters);
-  if (!spool) {
-    LOG(Edge, Error) << spool.error().message();
-    return kExitRecording;
-  }
-  const Status begun = link.publisher->BeginSession(DescribeRig(options, start));
-  if (!begun.ok()) return Fail(begun);
-  return Capture(
-      {options, start, **source, counters, health, *link.publisher, leaving, clock, stop},
-      std::move(*spool));
+  return end.status;
 }
 
 }  // namespace isotherm

@@ -30,15 +30,31 @@ TEST_F(EdgeCommandsTest, EveryCommandIsAnswered) {
   publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc},
                          {.number = 2,
                           .kind = CommandKind::kSetPublishPolicy,
-                          .publish_policy = PublishPolicy::kLossless},
-                         {.number = 3, .kind = CommandKind::kStopScan}};
+                          .publish_policy = PublishPolicy::kLossless}};
   Start("d");
-  const std::vector<CommandResult> answers = AwaitAnswers(3);
+  const std::vector<CommandResult> answers = AwaitAnswers(2);
   EXPECT_EQ(Find(answers, 1).outcome, CommandOutcome::kRefused) << "there is no thermal camera";
   EXPECT_FALSE(Find(answers, 1).text.empty());
   EXPECT_EQ(Find(answers, 2).outcome, CommandOutcome::kDone);
   EXPECT_EQ(publisher_.policy(), PublishPolicy::kLossless);
-  EXPECT_EQ(Find(answers, 3).outcome, CommandOutcome::kRefused);
+}
+
+TEST_F(EdgeCommandsTest, OrdersOfScansAreLeftToWhoRunsThem) {
+  publisher_.commands = {{.number = 1, .kind = CommandKind::kStopScan},
+                         {.number = 2, .kind = CommandKind::kSetPublishPolicy},
+                         {.number = 3, .kind = CommandKind::kStartScan}};
+  Start("d");
+  AwaitAnswers(1);
+  std::vector<Command> orders = pipeline_->TakeScanOrders();
+  while (orders.size() < 2) {
+    pipeline_->AnswerCommands();
+    for (const Command& order : pipeline_->TakeScanOrders()) orders.push_back(order);
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(orders[0].number, 1U);
+  EXPECT_EQ(orders[1].number, 3U);
+  EXPECT_TRUE(pipeline_->TakeScanOrders().empty());
+  EXPECT_EQ(publisher_.answers().size(), 1U);
 }
 
 TEST_F(EdgeCommandsTest, CommandsThatAreTooManyAreAnsweredToo) {

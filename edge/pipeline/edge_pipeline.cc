@@ -391,10 +391,10 @@ void EdgePipeline::Execute(const Command& command) {
       return;
     case CommandKind::kStartScan:
     case CommandKind::kStopScan:
-      break;
+      return scan_orders_.push_back(command);
   }
-  Answer({command.number, CommandOutcome::kRefused,
-          "a scan lasts from the start to the end of isotherm-edge"});
 }
+
+std::vector<Command> EdgePipeline::TakeScanOrders() { return std::exchange(scan_orders_, {}); }
 
 }  // namespace isotherm

@@ -76,8 +76,11 @@ class EdgePipeline {
 
   /// Describes the rig anew in the recording, if there is one. Thread-safe.
   void RecordRig(RigUpdate update);
-  /// Answers what the ground has asked for since the last call.
+  /// Answers what the ground has asked for since the last call, but for orders to start or stop a
+  /// scan: whoever runs the scans takes these and answers them.
   void AnswerCommands();
+  std::vector<Command> TakeScanOrders();
+  void Answer(const CommandResult& result);
 
   /// Returns true when the source has ended and each of its frames was recorded and published, or
   /// dropped and counted. Thread-safe.
@@ -128,7 +131,6 @@ class EdgePipeline {
   /// Runs on the capture thread, which alone talks to the camera.
   void ServeNucCommands();
   void Execute(const Command& command);
-  void Answer(const CommandResult& result);
 
   FrameSource& source_;
   Publisher& publisher_;
@@ -183,6 +185,7 @@ class EdgePipeline {
   };
   BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest, refuse_};
   BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest, refuse_};
+  std::vector<Command> scan_orders_;
   BoundedQueue<FrameToEncode> codec_queue_;
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;

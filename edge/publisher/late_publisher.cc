@@ -12,6 +12,7 @@ Status NoLink() { return Unavailable("the network is not there yet"); }
 }  // namespace
 
 void LatePublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) {
+  if (link() != nullptr) return link()->Run(std::move(stop), handlers);  // Once more.
   Result<std::unique_ptr<Publisher>> connected = connect_(stop, [this](const Status& reason) {
     MutexLock lock(mutex_);
     problem_ = reason.message();

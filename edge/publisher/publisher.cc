@@ -271,6 +271,7 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
     flow_waits_ = 0;
     flow_timeouts_ = 0;
   }
+  receipt_.Take();  // Of the session before.
   return Announce(rig);
 }
 

@@ -52,8 +52,8 @@ class Publisher {
                                                    const PublisherOptions& options);
   virtual ~Publisher() = default;
 
-  /// Receives commands, receipts and feedback until stop is requested. Needed for WaitForGround()
-  /// and for PublishPolicy::kLossless.
+  /// Receives commands, receipts and feedback until stop is requested, and again when called again.
+  /// Needed for WaitForGround() and for PublishPolicy::kLossless.
   virtual void Run(std::stop_token stop, const PublisherHandlers& handlers) = 0;
 
   /// Waits until a ground station follows this rig and reads our frames, in our wire version (an

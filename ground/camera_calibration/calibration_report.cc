@@ -42,7 +42,7 @@ std::vector<std::string> MissingViews(const TargetCalibration& calibration, int 
   return coverage.Missing();
 }
 
-void AddSubsets(const TargetCalibration& calibration, int camera, CameraReport& report) {
+void AddSubsets(const TargetCalibration& calibration, int camera, CalibratedCamera& report) {
   for (const FeatureSubset subset : {FeatureSubset::kNearBorders, FeatureSubset::kNearMiddle}) {
     const Result<TargetCalibration> part = CalibrateFromSubset(calibration, camera, subset);
     if (!part) continue;
@@ -51,7 +51,7 @@ void AddSubsets(const TargetCalibration& calibration, int camera, CameraReport& 
   }
 }
 
-void AddOpenCv(const TargetCalibration& calibration, int camera, CameraReport& report) {
+void AddOpenCv(const TargetCalibration& calibration, int camera, CalibratedCamera& report) {
   std::vector<std::vector<Eigen::Vector2d>> views;
   for (const auto& view : calibration.detections[static_cast<std::size_t>(camera)]) {
     if (!view.empty()) views.push_back(view);
@@ -64,10 +64,10 @@ void AddOpenCv(const TargetCalibration& calibration, int camera, CameraReport& r
   report.off_opencv_px = CompareProjections(report.camera, other, report.size_px).Rms(true);
 }
 
-CameraReport ReportCamera(const TargetCalibration& calibration, int camera,
-                          const ReportOptions& options) {
+CalibratedCamera ReportCamera(const TargetCalibration& calibration, int camera,
+                              const ReportOptions& options) {
   const auto index = static_cast<std::size_t>(camera);
-  CameraReport report;
+  CalibratedCamera report;
   report.camera = calibration.state.cameras[index];
   report.size_px = calibration.sizes_px[index];
   report.hole = calibration.holes[index];

@@ -15,7 +15,7 @@
 namespace isotherm {
 
 /// Holds what is said of one camera's calibration.
-struct CameraReport {
+struct CalibratedCamera {
   std::string name;
   BundleCamera camera;
   Eigen::Vector2i size_px = Eigen::Vector2i::Zero();
@@ -58,7 +58,7 @@ struct PoseReport {
 struct CalibrationReport {
   std::string date, software, source;
   std::string target;
-  std::vector<CameraReport> cameras;
+  std::vector<CalibratedCamera> cameras;
   std::optional<PoseReport> pose;
   std::vector<double> warp_mm;  ///< BoardShape::warp_m.
   double board_depth_mm = 0.0;  ///< From the board's nearest feature to the farthest, off a plane.

@@ -20,7 +20,7 @@ std::string Figure(const std::string& svg, std::string_view caption) {
   return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, caption);
 }
 
-std::string ParameterTable(const CameraReport& report) {
+std::string ParameterTable(const CalibratedCamera& report) {
   std::string html =
       "<table><tr><th>parameter</th><th>value</th><th>uncertainty</th><th>from resampled "
       "views</th><th>off by this, the error grows by 0.1 px</th><th>near borders only</th><th>near "
@@ -34,7 +34,7 @@ std::string ParameterTable(const CameraReport& report) {
                     std::sqrt(report.covariance(i, i)), spread(i),
                     report.sensitivity.empty() ? std::string("-")
                                                : fmt::format("{:.3g}", report.sensitivity[index]));
-    for (const CameraReport::Subset& subset : report.subsets)
+    for (const CalibratedCamera::Subset& subset : report.subsets)
       html += fmt::format("<td>{:.6g} &plusmn; {:.2g}</td>", subset.camera.lens[index],
                           std::sqrt(subset.covariance(i, i)));
     for (std::size_t missing = report.subsets.size(); missing < 2; ++missing) html += "<td>-</td>";
@@ -45,7 +45,7 @@ std::string ParameterTable(const CameraReport& report) {
   return html + "</table>\n";
 }
 
-std::string CameraHtml(const CameraReport& report) {
+std::string CameraHtml(const CalibratedCamera& report) {
   constexpr double kMagnified = 100.0, kDistance_m = 0.6;
   std::string html = fmt::format("<h2>{} camera</h2>\n", EscapeHtml(report.name));
   html += ParameterTable(report);
@@ -87,7 +87,7 @@ std::string ReportHtml(const CalibrationReport& report) {
       "<style>{}</style></head><body>\n<h1>Calibration</h1>\n<p>{}, {}, from {}</p>\n",
       kStyle, EscapeHtml(report.date), EscapeHtml(report.software), EscapeHtml(report.source));
   html += fmt::format("<pre>{}</pre>\n", EscapeHtml(ReportText(report)));
-  for (const CameraReport& camera : report.cameras) html += CameraHtml(camera);
+  for (const CalibratedCamera& camera : report.cameras) html += CameraHtml(camera);
   return html + "</body></html>\n";
 }
 

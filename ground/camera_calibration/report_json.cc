@@ -34,7 +34,7 @@ Json MapJson(const ProjectionMap& map) {
   return rows;
 }
 
-Json CameraJson(const CameraReport& report) {
+Json CameraJson(const CalibratedCamera& report) {
   Json json;
   json["camera"] = report.name;
   json["width"] = report.size_px.x();
@@ -55,7 +55,7 @@ Json CameraJson(const CameraReport& report) {
                                 {"ratio", report.cross_validation->Ratio()}};
   }
   json["change_for_0.1_px"] = report.sensitivity;
-  for (const CameraReport::Subset& subset : report.subsets) {
+  for (const CalibratedCamera::Subset& subset : report.subsets) {
     const char* const name =
         subset.features == FeatureSubset::kNearBorders ? "near_borders" : "near_middle";
     json["subsets"][name] = {{"lens", LensJson(subset.camera)},
@@ -94,7 +94,8 @@ Json ReportJson(const CalibrationReport& report) {
   json["source"] = report.source;
   json["target"] = report.target;
   json["cameras"] = Json::array();
-  for (const CameraReport& camera : report.cameras) json["cameras"].push_back(CameraJson(camera));
+  for (const CalibratedCamera& camera : report.cameras)
+    json["cameras"].push_back(CameraJson(camera));
   if (report.pose) json["pose"] = PoseJson(*report.pose);
   json["board"] = {{"warp_mm", report.warp_mm},
                    {"depth_mm", report.board_depth_mm},

@@ -11,7 +11,7 @@ namespace {
 constexpr double kDistance_m = 0.6;  // At which uncertainties are also said in millimetres.
 constexpr double kMillimetres = 1e3;
 
-std::string Parameters(const CameraReport& report) {
+std::string Parameters(const CalibratedCamera& report) {
   std::string text;
   const int count = LensParameterCount(report.camera.kind);
   const Eigen::VectorXd spread = report.bootstrap.Covariance().diagonal().cwiseSqrt();
@@ -30,7 +30,7 @@ std::string Parameters(const CameraReport& report) {
 }
 
 /// How certain the projection is, and whether two halves agree with that.
-std::string Certainty(const CameraReport& report) {
+std::string Certainty(const CalibratedCamera& report) {
   const double to_mm = kMillimetres * kDistance_m / report.camera.lens[0];
   const double rms = report.sigmas.Rms(true), max = report.sigmas.Max(false);
   std::string text = fmt::format(
@@ -51,9 +51,9 @@ std::string Certainty(const CameraReport& report) {
   return text;
 }
 
-std::string Subsets(const CameraReport& report) {
+std::string Subsets(const CalibratedCamera& report) {
   std::string text;
-  for (const CameraReport::Subset& subset : report.subsets) {
+  for (const CalibratedCamera::Subset& subset : report.subsets) {
     text += fmt::format(
         "  from features near the image's {} only: fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} k1 "
         "{:.4f} k2 {:.3f}, error {:.3f} px\n",
@@ -64,7 +64,7 @@ std::string Subsets(const CameraReport& report) {
   return text;
 }
 
-std::string OpenCv(const CameraReport& report) {
+std::string OpenCv(const CalibratedCamera& report) {
   if (!report.opencv) return {};
   const LensParameters& lens = report.opencv->lens;
   return fmt::format(
@@ -73,7 +73,7 @@ std::string OpenCv(const CameraReport& report) {
       lens[0], lens[1], lens[2], lens[3], report.opencv->rms_px, report.off_opencv_px);
 }
 
-std::string CameraText(const CameraReport& report) {
+std::string CameraText(const CalibratedCamera& report) {
   std::string text = fmt::format(
       "{} camera, {} x {} pixels: {} views, {} features, reprojection error {:.3f} px rms, {:.3f} "
       "px "
@@ -108,7 +108,7 @@ std::string PoseText(const PoseReport& pose, const std::string& first, const std
 
 std::string ReportText(const CalibrationReport& report) {
   std::string text;
-  for (const CameraReport& camera : report.cameras) text += CameraText(camera);
+  for (const CalibratedCamera& camera : report.cameras) text += CameraText(camera);
   if (report.pose) text += PoseText(*report.pose, report.cameras[0].name, report.cameras[1].name);
   text += fmt::format(
       "target '{}': off a plane by {:.2f} mm from its nearest feature to its farthest, features "

@@ -27,7 +27,7 @@ CalibrationRecord CommonRecord(const CalibrationReport& report) {
   return record;
 }
 
-CalibrationRecord CameraRecord(const CalibrationReport& report, const CameraReport& camera,
+CalibrationRecord CameraRecord(const CalibrationReport& report, const CalibratedCamera& camera,
                                const std::string& serial) {
   CalibrationRecord record = CommonRecord(report);
   if (!serial.empty()) record.set_serial(serial);
@@ -49,7 +49,7 @@ CalibrationRecord CameraRecord(const CalibrationReport& report, const CameraRepo
   return record;
 }
 
-CameraIntrinsics Intrinsics(const CameraReport& report) {
+CameraIntrinsics Intrinsics(const CalibratedCamera& report) {
   const LensParameters& lens = report.camera.lens;
   CameraIntrinsics intrinsics;
   intrinsics.set_width(report.size_px.x());
@@ -74,7 +74,7 @@ Status CheckSerial(const std::string& in_file, const std::string& measured, std:
       name, measured, in_file));
 }
 
-Status SetCamera(const CalibrationReport& report, const CameraReport& camera,
+Status SetCamera(const CalibrationReport& report, const CalibratedCamera& camera,
                  const std::string& serial, RigCalibration& rig) {
   const bool thermal = camera.name == "thermal";
   const std::string& in_file = thermal ? rig.thermal_serial() : rig.depth_serial();

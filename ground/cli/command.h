@@ -51,6 +51,7 @@ void AddMeasureCommand(CLI::App& app, CommandBody& body);
 void AddViewCommand(CLI::App& app, CommandBody& body);
 void AddReportCommand(CLI::App& app, CommandBody& body);
 void AddNucCommand(CLI::App& app, CommandBody& body);
+void AddScanCommand(CLI::App& app, CommandBody& body);
 
 // Those of `isotherm calibrate`.
 void AddCalibrateTimeCommand(CLI::App& calibrate, CommandBody& body);

@@ -88,6 +88,7 @@ void AddCommands(CLI::App& app, CommandBody& body) {
   AddTimingCommand(app, body);
   AddCalibrateCommand(app, body);
   AddNucCommand(app, body);
+  AddScanCommand(app, body);
   AddOptionsCommand(app, body);
 }
 

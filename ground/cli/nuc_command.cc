@@ -8,10 +8,8 @@
 #include <optional>
 
 #include "common/options/nearest_name.h"
-#include "common/transport/participant.h"
-#include "common/transport/transport_environment.h"
 #include "ground/cli/command.h"
-#include "ground/subscriber/rig_commander.h"
+#include "ground/cli/rig_order.h"
 
 namespace isotherm {
 namespace {
@@ -43,9 +41,7 @@ struct NucArguments {
   bool now = false;
   std::optional<double> hold_s;
   std::optional<int> policy;  ///< A NucPolicy.
-  std::string edge_id;
-  int domain = 0;
-  double timeout_s = 5.0;
+  RigAddress rig;
 };
 
 std::string CelsiusText(double celsius) {
@@ -88,31 +84,13 @@ std::optional<Command> OrderOf(const NucArguments& arguments) {
 }
 
 Status Run(const NucArguments& arguments) {
-  const SystemClock clock{};
-  const TransportEnvironment environment(clock);
-  const Nanoseconds timeout = FromSeconds(arguments.timeout_s);
-  const auto participant = Participant::Create(environment, arguments.domain);
-  if (!participant) return participant.error();
-  const auto commander = RigCommander::Create(**participant, clock, arguments.edge_id);
-  if (!commander) return commander.error();
-  const Result<EdgeStatus> status = (*commander)->AwaitStatus(timeout);
-  if (!status) return status.error();
-  const std::optional<Command> order = OrderOf(arguments);
-  if (!order) {
-    std::fputs(StatusText((*commander)->edge_id(), status->nuc).c_str(), stdout);
+  return WithRig(arguments.rig, [&](RigCommander& rig, const EdgeStatus& status) {
+    if (const std::optional<Command> order = OrderOf(arguments)) {
+      return SendOrder(rig, *order, arguments.rig);
+    }
+    std::fputs(StatusText(rig.edge_id(), status.nuc).c_str(), stdout);
     return OkStatus();
-  }
-  const Result<CommandResult> answer = (*commander)->Send(*order, timeout);
-  if (!answer) return answer.error();
-  const std::string& rig = (*commander)->edge_id();
-  // Scripts tell a refusal by the exit status (69).
-  if (answer->outcome != CommandOutcome::kDone) {
-    return Unavailable(fmt::format(
-        "{} {}: {}", rig, answer->outcome == CommandOutcome::kRefused ? "refuses" : "failed",
-        answer->text));
-  }
-  fmt::print("{}: {}\n", rig, answer->text.empty() ? "done" : answer->text);
-  return OkStatus();
+  });
 }
 
 }  // namespace
@@ -138,14 +116,7 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
       ->transform(CLI::Validator(NumberOfName(policies), ""))
       ->type_name("POLICY");
   orders->require_option(0, 1);
-  command->add_option("--edge-id", arguments->edge_id, "Which rig, if there are several")
-      ->type_name("NAME");
-  command->add_option("--domain", arguments->domain, "DDS domain, 0..230")
-      ->check(CLI::Range(0, kMaxDomainId))
-      ->type_name("N");
-  command->add_option("--timeout", arguments->timeout_s, "How long to wait for the rig, seconds")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+  AddRigAddress(*command, arguments->rig);
   command->footer(kNucFooter);
   command->callback([arguments, &body] {
     body = [arguments] {

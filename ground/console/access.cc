@@ -7,6 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "ground/console/text_reply.h"
+
 namespace isotherm {
 namespace {
 
@@ -19,13 +21,6 @@ constexpr Nanoseconds kSessionLasts = 30 * 24h;
 /// So many wrong tokens cost nothing; then each one doubles the pause.
 constexpr int kFreeMistakes = 5;
 constexpr int kMaxDoublings = 6;  // About a minute.
-
-WebReply SayInText(int status, std::string text) {
-  WebReply reply;
-  reply.status = status;
-  reply.body = std::make_shared<const std::string>(std::move(text));
-  return reply;
-}
 
 }  // namespace
 
@@ -80,10 +75,10 @@ std::string_view CookieValue(std::string_view header, std::string_view name) {
 std::optional<WebReply> Access::Refusal(const WebRequest& request) const {
   // A page of another host that has this one's address (DNS rebinding) calls it by its own name.
   if (is_open() && !IsLoopbackName(HostName(request.host)))
-    return SayInText(421, "this host is not served under that name\n");
+    return TextReply(421, "this host is not served under that name\n");
   const std::string own = (is_secure_ ? "https://" : "http://") + request.host;
   if (!request.origin.empty() && request.origin != own)
-    return SayInText(403, "pages of other hosts are not served\n");
+    return TextReply(403, "pages of other hosts are not served\n");
   return std::nullopt;
 }
 
@@ -108,15 +103,15 @@ std::optional<live::Role> Access::RoleOf(const WebRequest& request) const {
 bool Access::IsTooSoon() { return clock_.SteadyNow() < not_before_; }
 
 WebReply Access::LogIn(const WebRequest& request) {
-  if (request.method != "POST") return SayInText(405, "the code is sent by POST\n");
-  if (IsTooSoon()) return SayInText(429, "too many wrong codes: wait a little\n");
+  if (request.method != "POST") return TextReply(405, "the code is sent by POST\n");
+  if (IsTooSoon()) return TextReply(429, "too many wrong codes: wait a little\n");
   const std::optional<live::Role> role = RoleOfToken(request.body);
   if (!role) {
     if (++wrong_ > kFreeMistakes) {
       const int doublings = std::min(kMaxDoublings, wrong_ - kFreeMistakes);
       not_before_ = clock_.SteadyNow() + std::chrono::seconds(1 << doublings);
     }
-    return SayInText(401, "this code is not known\n");
+    return TextReply(401, "this code is not known\n");
   }
   wrong_ = 0;
   if (sessions_.size() >= kMaxSessions) {
@@ -125,7 +120,7 @@ WebReply Access::LogIn(const WebRequest& request) {
   }
   const std::string id = RandomToken(kSessionBits);
   sessions_[id] = {*role, clock_.SteadyNow()};
-  WebReply reply = SayInText(200, *role == live::OPERATOR ? "operator\n" : "viewer\n");
+  WebReply reply = TextReply(200, *role == live::OPERATOR ? "operator\n" : "viewer\n");
   reply.headers.emplace_back(
       "Set-Cookie",
       fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", kCookie, id,

@@ -5,16 +5,10 @@
 #include <algorithm>
 
 #include "ground/console/foxglove_session.h"
+#include "ground/console/text_reply.h"
 
 namespace isotherm {
 namespace {
-
-WebReply Text(int status, std::string text) {
-  WebReply reply;
-  reply.status = status;
-  reply.body = std::make_shared<const std::string>(std::move(text));
-  return reply;
-}
 
 WebReply JsonReply(const google::protobuf::Message& message) {
   google::protobuf::util::JsonPrintOptions options;
@@ -37,6 +31,13 @@ WebHandlers ConsoleRoutes::Handlers() {
           .socket = [this](const WebRequest& request) { return Accept(request); }};
 }
 
+live::Scan ConsoleRoutes::KeptScan() const {
+  live::ServerMessage message;
+  if (const LiveMessagePtr kept = session_.hub.Kept(LiveKind::kScan))
+    message.ParseFromString(kept->bytes);
+  return message.scan();
+}
+
 WebReply ConsoleRoutes::AnswerFromKept(const WebRequest& request) const {
   live::ServerMessage message;
   const LiveKind kind = request.path == "/api/state"  ? LiveKind::kState
@@ -56,7 +57,9 @@ void ConsoleRoutes::Answer(const WebRequest& request, const Reply& reply) {
   } else if (request.path == "/api/login") {
     answer = access_.LogIn(request);
   } else if (is_api && !access_.RoleOf(request)) {
-    answer = Text(401, "log in first: POST the code to /api/login\n");
+    answer = TextReply(401, "log in first: POST the code to /api/login\n");
+  } else if (ResultDownloads::IsFor(request)) {
+    answer = downloads_.Answer(request, KeptScan());
   } else if (request.path == "/api/state" || request.path == "/api/scan" ||
              request.path == "/api/measurements") {
     answer = AnswerFromKept(request);
@@ -75,19 +78,19 @@ std::variant<AcceptedSocket, WebReply> ConsoleRoutes::AcceptFoxglove(const WebRe
     return AcceptedSocket{.handler = std::make_unique<FoxgloveSession>(session_, role),
                           .subprotocol = offered};
   }
-  return Text(400, "the subprotocol must be foxglove.sdk.v1 or foxglove.websocket.v1\n");
+  return TextReply(400, "the subprotocol must be foxglove.sdk.v1 or foxglove.websocket.v1\n");
 }
 
 std::variant<AcceptedSocket, WebReply> ConsoleRoutes::Accept(const WebRequest& request) {
   if (std::optional<WebReply> refusal = access_.Refusal(request)) return std::move(*refusal);
   const std::optional<live::Role> role = access_.RoleOf(request);
-  if (!role) return Text(401, "log in first: POST the code to /api/login\n");
+  if (!role) return TextReply(401, "log in first: POST the code to /api/login\n");
   if (session_.hub.clients() >= static_cast<std::size_t>(options_.expert().max_viewers()))
-    return Text(503, "too many viewers (console.expert.max_viewers)\n");
+    return TextReply(503, "too many viewers (console.expert.max_viewers)\n");
   if (request.path == "/foxglove") return AcceptFoxglove(request, *role);
-  if (request.path != "/live") return Text(404, "there is no such socket\n");
+  if (request.path != "/live") return TextReply(404, "there is no such socket\n");
   if (std::ranges::find(request.subprotocols, kLiveSubprotocol) == request.subprotocols.end())
-    return Text(400, "the subprotocol must be isotherm.live.v1\n");
+    return TextReply(400, "the subprotocol must be isotherm.live.v1\n");
   return AcceptedSocket{.handler = std::make_unique<LiveSession>(session_, *role),
                         .subprotocol = std::string(kLiveSubprotocol)};
 }

@@ -4,6 +4,7 @@
 
 #include "ground/console/access.h"
 #include "ground/console/live_session.h"
+#include "ground/console/result_downloads.h"
 #include "ground/console/static_page.h"
 #include "ground/console/web_server.h"
 #include "ground/options/ground_options.pb.h"
@@ -27,11 +28,14 @@ class ConsoleRoutes {
   std::variant<AcceptedSocket, WebReply> Accept(const WebRequest& request);
   std::variant<AcceptedSocket, WebReply> AcceptFoxglove(const WebRequest& request, live::Role role);
   WebReply AnswerFromKept(const WebRequest& request) const;
+  /// Returns the scan that is shown; an empty one if there is none.
+  live::Scan KeptScan() const;
 
   LiveSession::Context& session_;
   const ConsoleOptions options_;
   Access access_;
   const StaticPage page_{};
+  const ResultDownloads downloads_{};
 };
 
 }  // namespace isotherm

@@ -4,15 +4,10 @@
 
 #include <algorithm>
 
+#include "ground/console/text_reply.h"
+
 namespace isotherm {
 namespace {
-
-WebReply TextReply(int status, std::string text) {
-  WebReply reply;
-  reply.status = status;
-  reply.body = std::make_shared<const std::string>(std::move(text));
-  return reply;
-}
 
 /// For clients that do not unpack themselves. What we packed ourselves is whole.
 std::string Unpack(std::string_view gzip) {

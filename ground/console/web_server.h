@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stop_token>
@@ -32,6 +33,7 @@ struct WebReply {
   int status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body;
+  std::filesystem::path file{};  ///< Sent instead of the body, in pieces, if it is not empty.
   std::vector<std::pair<std::string, std::string>> headers;
 };
 

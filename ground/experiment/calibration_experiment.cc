@@ -37,7 +37,7 @@ Eigen::VectorXd Values(const BundleCamera& camera) {
 
 /// The rows of tables 5.1a, 5.2 and 5.3 for one camera.
 void DescribeCamera(const TargetCalibration& calibration, int camera, const BundleCamera& truth,
-                    const CameraReport& report, ExperimentReport& experiment) {
+                    const CalibratedCamera& report, ExperimentReport& experiment) {
   auto& rows = experiment.table.rows;
   const std::string& name = report.name;
   rows.push_back(LensRow(name + ", true", NAN, Values(truth)));
@@ -46,7 +46,7 @@ void DescribeCamera(const TargetCalibration& calibration, int camera, const Bund
   rows.push_back(
       LensRow(name + ", +- (20 of 30 views)", NAN, subsets.Covariance().diagonal().cwiseSqrt()));
   rows.push_back(LensRow(name + ", +- (reported)", NAN, report.covariance.diagonal().cwiseSqrt()));
-  for (const CameraReport::Subset& subset : report.subsets) {
+  for (const CalibratedCamera::Subset& subset : report.subsets) {
     const char* const where = subset.features == FeatureSubset::kNearBorders ? "borders" : "middle";
     rows.push_back(LensRow(fmt::format("{}, features near {}", name, where), subset.error.rms_px,
                            Values(subset.camera)));
@@ -71,12 +71,12 @@ struct WorstOff {
   int within_count = 0;
 };
 
-BundleCamera OpenCvCamera(const CameraReport& report) {
+BundleCamera OpenCvCamera(const CalibratedCamera& report) {
   return {LensKind::kBrownConrady, report.opencv ? report.opencv->lens : LensParameters{},
           RigidTransform::Identity()};
 }
 
-void MeasureCamera(const CameraReport& report, const BundleCamera& truth, bool thermal,
+void MeasureCamera(const CalibratedCamera& report, const BundleCamera& truth, bool thermal,
                    WorstOff& worst) {
   const ProjectionMap off = CompareProjections(truth, report.camera, report.size_px);
   const double opencv = CompareProjections(truth, OpenCvCamera(report), report.size_px).Rms(true);

@@ -183,21 +183,19 @@ Status PrepareOutputDir(const fs::path& dir) {
   return OkStatus();
 }
 
-bool HoldsResults(const fs::path& dir) {
-  bool found = false;
-  ForEachResult(dir, [&](const fs::path& /*file*/) { found = true; });
-  return found;
+std::vector<fs::path> ResultFilesIn(const fs::path& dir) {
+  std::vector<fs::path> files;
+  ForEachResult(dir, [&](const fs::path& file) { files.push_back(file); });
+  std::ranges::sort(files);
+  return files;
 }
 
+bool HoldsResults(const fs::path& dir) { return !ResultFilesIn(dir).empty(); }
+
 void RemoveOtherResults(const fs::path& dir, const std::set<std::string>& written) {
-  // Collected first: removing entries while a directory is read may skip others.
-  std::vector<fs::path> others;
-  ForEachResult(dir, [&](const fs::path& file) {
-    if (!written.contains(file.lexically_relative(dir).string())) others.push_back(file);
-  });
-  for (const fs::path& file : others) {
+  for (const fs::path& file : ResultFilesIn(dir)) {
     std::error_code ignored;
-    fs::remove(file, ignored);
+    if (!written.contains(file.lexically_relative(dir).string())) fs::remove(file, ignored);
   }
 }
 

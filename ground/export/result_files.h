@@ -32,6 +32,9 @@ Status Validate(const ExportOptions& options);
 /// place.
 Status PrepareOutputDir(const std::filesystem::path& dir);
 
+/// Returns the files of the results that are in the folder, in the order of their names; empty if
+/// there are none, or no such folder.
+std::vector<std::filesystem::path> ResultFilesIn(const std::filesystem::path& dir);
 /// Returns whether results of a scan are in the folder.
 bool HoldsResults(const std::filesystem::path& dir);
 

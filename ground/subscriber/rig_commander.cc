@@ -65,8 +65,6 @@ Result<EdgeStatus> RigCommander::AwaitStatus(Nanoseconds timeout) {
 
 void RigCommander::TakeStatuses() {
   statuses_.Take([this](Received<EdgeStatus>&& received) {
-    // What is kept of a scan that has ended is not the state now.
-    if (received.message.scan_state == ScanState::kEnded) return;
     const PeerHandle peer = statuses_.PeerOf(received.writer);
     if (peer == 0) return;  // It has left.
     rigs_[received.edge_id] = {std::move(received.message), peer};

@@ -153,8 +153,21 @@ TEST_F(RigCommanderTest, AWrongNameIsAnsweredWithTheRigsThatAreThere) {
                     HasSubstr("\"alpha\", \"beta\"")));
 }
 
-TEST_F(RigCommanderTest, ARigWhoseScanHasEndedIsNotThere) {
+TEST_F(RigCommanderTest, ARigWhoseScanHasEndedTakesTheOrderToStartTheNextOne) {
   const auto alpha = Rig("alpha", ScanState::kEnded);
+  alpha->Listen();
+  const auto commander = Commander("");
+  const Result<EdgeStatus> status = commander->AwaitStatus(kPatience);
+  ASSERT_TRUE(status.has_value()) << status.error().message();
+  EXPECT_EQ(status->scan_state, ScanState::kEnded);
+  const Result<CommandResult> answer =
+      commander->Send({.kind = CommandKind::kStartScan}, kPatience);
+  ASSERT_TRUE(answer.has_value()) << answer.error().message();
+  EXPECT_EQ(alpha->executed(), 1);
+}
+
+TEST_F(RigCommanderTest, ARigThatHasLeftIsNotThere) {
+  Rig("alpha", ScanState::kEnded).reset();
   const Result<EdgeStatus> status = Commander("")->AwaitStatus(kShort);
   ASSERT_FALSE(status.has_value());
   EXPECT_THAT(status.error().message(), HasSubstr("is isotherm-edge running"));

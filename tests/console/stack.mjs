@@ -66,9 +66,9 @@ export class Stack {
       }
     }, `the console: ${this.ground.text}`);
   }
-  startEdge(options = []) {
+  startEdge({ stays = false } = {}) {
     this.edge = start("isotherm-edge", ["--recording", recording, "--edge-id", this.edgeId, "--domain", String(this.domain), "--rate", "1",
-      "--exit-at-end", ...options], true);
+      "--record", "off", ...(stays ? ["--set", "source.loops=0"] : ["--exit-at-end"])], true);
     this.children.push(this.edge);
     return this.edge;
   }

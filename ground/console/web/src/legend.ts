@@ -54,14 +54,14 @@ export class Legend {
       if (!Number.isFinite(value)) return this.draw();
       const celsius = toCelsius(value, this.look.unit);
       const [min, max] = which === "min_celsius" ? [celsius, this.shown[1]] : [this.shown[0], celsius];
-      if (max - min >= 0.1) looks.set({ min_celsius: min, max_celsius: max, locked: true });
+      if (max - min >= 0.1) looks.set({ min_celsius: min, max_celsius: max, locked: true, widens: false });
       this.draw();
     };
     this.max = h("input", { type: "number", step: "0.5", "aria-label": "Highest temperature of the palette", onchange: edit("max_celsius") });
     this.min = h("input", { type: "number", step: "0.5", "aria-label": "Lowest temperature of the palette", onchange: edit("min_celsius") });
     this.lock = h("button", { type: "button", class: "lock", onclick: () => {
       if (looks.value.locked) looks.set({ locked: false });
-      else looks.set({ locked: true, min_celsius: this.shown[0], max_celsius: this.shown[1] });
+      else looks.set({ locked: true, widens: false, min_celsius: this.shown[0], max_celsius: this.shown[1] });
     } });
     this.scale = h("div", { class: "scale" }, this.max, this.bar, this.middle, this.min, this.lock);
     this.element.append(this.title, this.scale, this.rows);
@@ -87,16 +87,17 @@ export class Legend {
   }
 
   private draw(): void {
-    const { layer, unit, locked } = this.look;
+    const { layer, unit, locked, widens } = this.look;
     setText(this.title, layers.find(([name]) => name === layer)![1]);
     const hasBar = layer === "thermal" || layer === "age" || layer === "uncertainty";
     show(this.scale, hasBar);
     const isThermal = layer === "thermal";
     this.max.disabled = this.min.disabled = !isThermal;
     show(this.lock, isThermal);
-    setText(this.lock, locked ? "Fixed" : "Auto");
+    setText(this.lock, !locked ? "Auto" : widens ? "Widens" : "Fixed");
     this.lock.setAttribute("aria-pressed", String(locked));
-    this.lock.title = locked ? "The span is fixed. Press to let it follow the model." : "The span follows the model. Press to fix it.";
+    this.lock.title = !locked ? "The span follows the model. Press to fix it."
+      : `The span ${widens ? "only widens, in steps of 5 °C; type a limit to fix it" : "is fixed"}. Press to let it follow the model.`;
     if (hasBar) this.drawBar();
     const write = (input: HTMLInputElement, value: string): void => {
       if (document.activeElement !== input) input.value = value;

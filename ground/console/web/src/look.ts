@@ -20,8 +20,10 @@ export interface Look {
   layer: Layer;
   palette: string;
   unit: Unit;
-  /** The span is fixed until somebody changes it. */
+  /** The span is fixed until somebody changes it... */
   locked: boolean;
+  /** ... but for what the model has beyond it, until somebody has chosen a span. */
+  widens: boolean;
   min_celsius: number;
   max_celsius: number;
   /** In °C. */
@@ -40,7 +42,7 @@ export interface Look {
 }
 
 const defaults: Look = {
-  layer: "thermal", palette: "iron", unit: "celsius", locked: true, min_celsius: NaN, max_celsius: NaN, isotherms: [],
+  layer: "thermal", palette: "iron", unit: "celsius", locked: true, widens: true, min_celsius: NaN, max_celsius: NaN, isotherms: [],
   interpret: false, emissivity: 0.95, reflected_celsius: 23, material: "", shading: true, showVolume: true,
   showPath: true, showCameras: true, showNext: true, follow: true,
 };

@@ -111,15 +111,26 @@ addTab("Control", control.element);
 openTab("View");
 if (matchMedia("(max-width: 760px)").matches) side.classList.add("closed");
 
+/** The span that is kept, widened in steps to what the model has by now. */
+function widened(model: [number, number]): [number, number] {
+  const { min_celsius, max_celsius } = looks.value;
+  // Colours that change their meaning all the time cannot be read.
+  const step = 5;
+  const [min, max] = [Math.floor(model[0] / step) * step, Math.ceil(model[1] / step) * step];
+  return Number.isFinite(min_celsius) && Number.isFinite(max_celsius) ? [Math.min(min_celsius, min), Math.max(max_celsius, max)] : [min, max];
+}
 function applySpan(): void {
-  const { locked, min_celsius, max_celsius, unit } = looks.value;
-  void unit;
+  const { locked, widens, min_celsius, max_celsius } = looks.value;
   let span: [number, number] | null = [min_celsius, max_celsius];
-  if (!locked || !Number.isFinite(min_celsius) || !Number.isFinite(max_celsius)) {
-    span = view.surface.span();
+  const isSet = Number.isFinite(min_celsius) && Number.isFinite(max_celsius);
+  if (!locked || widens || !isSet) {
+    const model = view.surface.span();
+    span = model ?? (isSet ? span : null);
+    if (model && locked && view.surface.groups >= 8) {
+      span = widened(model);
+      looks.set({ min_celsius: span[0], max_celsius: span[1] });
+    }
     if (span && span[1] - span[0] < 0.5) span = [span[0] - 0.25, span[1] + 0.25];
-    // The first surface that is worth it sets the span, which then stays.
-    if (span && locked && view.surface.groups >= 8) looks.set({ min_celsius: Math.floor(span[0]), max_celsius: Math.ceil(span[1]) });
   }
   if (!span) return;
   view.surfaceMaterial.setSpan(span[0], span[1]);
@@ -129,7 +140,7 @@ function applySpan(): void {
 looks.onChange((look, changed) => {
   followButton.setAttribute("aria-pressed", String(look.follow));
   if (changed.has("palette")) inputs.setColours(coloursOf(look.palette));
-  if (["locked", "min_celsius", "max_celsius"].some((key) => changed.has(key as keyof typeof look))) applySpan();
+  if (["locked", "widens", "min_celsius", "max_celsius"].some((key) => changed.has(key as keyof typeof look))) applySpan();
   if (changed.has("layer") || changed.has("follow")) tellView();
 });
 
@@ -175,10 +186,11 @@ connection.on("scan", (value) => {
     if (value.phase === Scan_Phase.FINISHED) looks.set({ follow: false });
     tracking = Tracking.TRACKING_WAITING;
     // A span belongs to the scan for which it was chosen.
-    if (value.phase === Scan_Phase.RUNNING) looks.set({ min_celsius: NaN, max_celsius: NaN });
+    if (value.phase === Scan_Phase.RUNNING) looks.set({ widens: true, min_celsius: NaN, max_celsius: NaN });
     guidance.clear(value.phase === Scan_Phase.WAITING ? "Waiting for a scan" : "The scan begins");
   }
-  if (value.phase === Scan_Phase.ENDED) guidance.clear("The scan has ended", "Its results are in its folder; the surface stays here until the next scan begins");
+  if (value.phase === Scan_Phase.ENDED) guidance.clear("The scan has ended", "Its results are written; the surface stays here until the next scan begins");
+  control.setScan(value);
 });
 connection.on("maps", (maps) => view.surface.setMaps(maps));
 connection.on("group", (group) => view.surface.add(group));

@@ -32,6 +32,9 @@ function frustumOf(camera: Camera | undefined, depth_m: number, colour: number, 
   return lines;
 }
 
+/** A frame that takes longer is one that a person sees the page wait for. */
+const slowFrame_ms = 80;
+
 export class View3d {
   readonly surface: SurfaceModel;
   readonly surfaceMaterial = new SurfaceMaterial();
@@ -59,6 +62,9 @@ export class View3d {
   private lastFrame = 0;
   private framed = false;
   frameTimes: number[] = [];
+  /** When the frame before this one was drawn, if it was. */
+  private drawnAt: number | undefined;
+  private restUntil = 0;
   onMoved: () => void = () => undefined;
   onFrame: () => void = () => undefined;
 
@@ -259,8 +265,12 @@ export class View3d {
       }
     }
     this.controls.update();
-    if (!this.needsFrame) return;
+    // Where a frame takes long (no GPU), drawing gets half of the time: messages, buttons and the scan beside it want the rest.
+    if (this.drawnAt !== undefined && time - this.drawnAt > slowFrame_ms) this.restUntil = time + (time - this.drawnAt);
+    this.drawnAt = undefined;
+    if (!this.needsFrame || time < this.restUntil) return;
     this.needsFrame = false;
+    this.drawnAt = time;
     const start = performance.now();
     this.renderer.render(this.scene, this.camera);
     this.frameTimes.push(performance.now() - start);
