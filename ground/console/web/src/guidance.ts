@@ -43,6 +43,7 @@ export class GuidancePanel {
   private readonly view = new Bar("View", "The surface in view, by how well it was measured");
   private readonly model = new Bar("Model", "The whole surface so far, by how well it was measured");
   private readonly area = h("span", { class: "area" });
+  private readonly bars = h("div", { class: "bars" });
   private readonly memory = remember("sound", false);
   private audio: AudioContext | null = null;
   private kind = "";
@@ -53,7 +54,9 @@ export class GuidancePanel {
       onclick: () => this.toggleSound() }, "Sound");
     this.element = h("section", { class: "guidance", "aria-label": "Guidance" },
       h("div", { class: "advice", role: "status", "aria-live": "polite" }, this.icon, h("div", {}, this.sentence, this.reason)),
-      h("div", { class: "bars" }, this.view.element, this.model.element, this.area));
+      this.bars);
+    this.bars.append(this.view.element, this.model.element, this.area);
+    show(this.bars, false);
   }
 
   toggleSound(): void {
@@ -63,15 +66,22 @@ export class GuidancePanel {
     if (on) this.play([660]);
   }
 
-  clear(text: string, reason = ""): void {
+  /** Advises nothing any more; the coverage that was reached stays. */
+  end(text: string, reason: string): void {
     this.guidance = undefined;
     this.say("", text, reason, "idle");
+  }
+
+  clear(text: string, reason = ""): void {
+    this.end(text, reason);
     this.view.set(undefined);
     this.model.set(undefined);
     setText(this.area, "");
+    show(this.bars, false);  // Nothing is known.
   }
 
   set(guidance: Guidance, state: State | undefined): void {
+    show(this.bars, true);
     this.guidance = guidance;
     this.view.set(guidance.view);
     this.model.set(guidance.model);

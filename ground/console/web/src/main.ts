@@ -189,7 +189,7 @@ connection.on("scan", (value) => {
     if (value.phase === Scan_Phase.RUNNING) looks.set({ widens: true, min_celsius: NaN, max_celsius: NaN });
     guidance.clear(value.phase === Scan_Phase.WAITING ? "Waiting for a scan" : "The scan begins");
   }
-  if (value.phase === Scan_Phase.ENDED) guidance.clear("The scan has ended", "Its results are written; the surface stays here until the next scan begins");
+  if (value.phase === Scan_Phase.ENDED) guidance.end("The scan has ended", "Its results are written; the surface stays here until the next scan begins");
   control.setScan(value);
 });
 connection.on("maps", (maps) => view.surface.setMaps(maps));
