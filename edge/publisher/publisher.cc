@@ -268,8 +268,7 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
     session_ = rig.session;
     depth_.BeginSession();
     thermal_.BeginSession();
-    flow_waits_ = 0;
-    flow_timeouts_ = 0;
+    flow_waits_ = flow_timeouts_ = 0;
   }
   receipt_.Take();  // Of the session before.
   return Announce(rig);
