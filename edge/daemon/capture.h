@@ -40,7 +40,7 @@ struct CaptureParts {
 
 /// Tells how a scan has ended.
 struct CaptureEnd {
-  int status = 0;             ///< Of the process, if nothing worse follows.
+  int status = 0;             ///< Becomes that of the process, if nothing worse follows.
   bool another_scan = false;  ///< Ordered; otherwise the process is to leave.
 };
 

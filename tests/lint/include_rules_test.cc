@@ -70,6 +70,14 @@ TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
   EXPECT_THAT(MessagesFor("ground/service/live_scan.cc", "#include <isotherm_frames.h>"),
               ElementsAre(HasSubstr("belongs to common/transport only")));
   EXPECT_THAT(MessagesFor("common/transport/participant.cc", "#include \"dds/dds.h\""), IsEmpty());
+  // A header that is part of one source file.
+  const auto asio = "#include <boost/asio/post.hpp>";
+  EXPECT_THAT(MessagesFor("ground/console/http_connection.h", asio), IsEmpty());
+  EXPECT_THAT(MessagesFor("ground/console/door.h", asio), ElementsAre(HasSubstr(".cc files only")));
+  const auto part = "#include \"ground/console/http_connection.h\"";
+  EXPECT_THAT(MessagesFor("ground/console/web_server.cc", part), IsEmpty());
+  EXPECT_THAT(MessagesFor("ground/console/console.cc", part),
+              ElementsAre(HasSubstr("part of ground/console/web_server.cc")));
 }
 
 TEST(IncludeRulesTest, HeavyHeadersDoNotLeaveTheirFolder) {
