@@ -82,7 +82,9 @@ if (wanted.includes("slow")) await scan("a fast viewer beside one with 200 ms an
 });
 if (wanted.includes("ten")) await scan("ten viewers", 10);
 if (wanted.includes("reconnect")) await scan("fifty reconnects", 1, async (stack) => {
-  await until(async () => Number((await stack.state()).depth?.received ?? 0) > 30, "a scan");
+  // Before that, the model grows, too.
+  await stack.edge.ended;
+  await until(async () => (await (await fetch(`${stack.url}/api/scan`)).json()).phase === "ENDED", "the end", 120000);
   const one = async () => { const r = reader(stack.port); await sleep(60); r.close(); await sleep(20); };
   for (let i = 0; i < 5; ++i) await one();
   const before = rss_mb(stack.ground.pid);
