@@ -145,8 +145,8 @@ double GuessHoleSize(const Image<float>& image, const CalibrationTarget& target,
   std::vector<double> sizes;
   for (int i = 0; i + target.columns < target.features(); ++i) {
     const int other = i + target.columns;  // In the next row.
-    const Eigen::Vector2d from = features[static_cast<std::size_t>(i)];
-    const Eigen::Vector2d to = features[static_cast<std::size_t>(other)];
+    const Eigen::Vector2d& from = features[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d& to = features[static_cast<std::size_t>(other)];
     const double distance_m = (target.FeaturePosition(other) - target.FeaturePosition(i)).norm();
     const double middle =
         0.5 * (Interpolated(image, from) + Interpolated(image, 0.5 * (from + to)));

@@ -49,12 +49,12 @@ std::string SvgMap(const ProjectionMap& map, std::string_view unit) {
   for (int i = 0; i < ProjectionMap::kColumns * ProjectionMap::kRows; ++i) {
     const double length = map.LengthAt(i);
     if (!std::isfinite(length)) continue;
+    const int column = i % ProjectionMap::kColumns, row = i / ProjectionMap::kColumns;
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\">"
         "<title>{:.4f} {}</title></rect>\n",
-        i % ProjectionMap::kColumns * cell_x, i / ProjectionMap::kColumns * cell_y, cell_x + 0.5,
-        cell_y + 0.5, Colour(std::log(std::max(length, low) / low) / std::log(high / low)), length,
-        unit);
+        column * cell_x, row * cell_y, cell_x + 0.5, cell_y + 0.5,
+        Colour(std::log(std::max(length, low) / low) / std::log(high / low)), length, unit);
   }
   constexpr int kSteps = 5;
   for (int i = 0; i <= kSteps; ++i) {

@@ -39,7 +39,7 @@ class View {
       : truth_(truth),
         camera_(camera),
         lines_of_sight_(lines_of_sight),
-        R_(T_truth_camera.linear().transpose().cast<float>()),
+        rotation_(T_truth_camera.linear().transpose().cast<float>()),
         position_(T_truth_camera.translation().cast<float>()),
         depth_m_(camera.width, camera.height, std::numeric_limits<float>::max()) {
     for (std::size_t i = 0; i < truth.points().positions_m.size(); ++i) Draw(i);
@@ -52,7 +52,7 @@ class View {
         distance_m > limits.max_distance_m) {
       return false;
     }
-    const float cosine = -(R_ * truth_.points().normals[i]).dot(p) / distance_m;
+    const float cosine = -(rotation_ * truth_.points().normals[i]).dot(p) / distance_m;
     if (cosine < std::cos(limits.max_angle_deg * kRadPerDeg) ||
         cosine > std::cos(limits.min_angle_deg * kRadPerDeg)) {
       return false;
@@ -66,7 +66,7 @@ class View {
 
  private:
   Eigen::Vector3f Point(std::size_t i) const {
-    return R_ * (truth_.points().positions_m[i] - position_);
+    return rotation_ * (truth_.points().positions_m[i] - position_);
   }
   static Eigen::Vector2d Normalized(const Eigen::Vector3f& p) {
     return (p.head<2>() / p.z()).cast<double>();
@@ -93,7 +93,7 @@ class View {
     const Eigen::Vector3f p = Point(i);
     if (!(p.z() > kMinDepth_m)) return;
     const float radius_m = truth_.spacing_m();
-    const Eigen::Vector3f n = R_ * truth_.points().normals[i];
+    const Eigen::Vector3f n = rotation_ * truth_.points().normals[i];
     const Eigen::AlignedBox2i pixels = PixelsAround(p);
     for (int y = pixels.min().y(); y <= pixels.max().y(); ++y) {
       for (int x = pixels.min().x(); x <= pixels.max().x(); ++x) {
@@ -110,7 +110,7 @@ class View {
   const TrueSurface& truth_;
   const CameraModel& camera_;
   const Image<Eigen::Vector2f>& lines_of_sight_;
-  const Eigen::Matrix3f R_;
+  const Eigen::Matrix3f rotation_;
   const Eigen::Vector3f position_;
   Image<float> depth_m_;
 };
