@@ -93,7 +93,7 @@ std::string List(const std::vector<OptionGroup>& groups) {
 }
 
 /// In a cell of a table.
-std::string Cell(std::string text) {
+std::string Cell(std::string_view text) {
   std::string cell;
   for (const char c : text) {
     if (c == '|') cell += '\\';

@@ -41,10 +41,11 @@ WebServerOptions WithLimits(WebServerOptions server, const ConsoleOptions& optio
 
 /// In the order in which they are made: each knows those before it.
 struct Console::Parts {
-  Parts(const GroundOptions& options_, const Clock& clock_, Door door_, ConsoleServices services)
-      : options(options_),
-        clock(clock_),
-        door(std::move(door_)),
+  Parts(const GroundOptions& ground_options, const Clock& its_clock, Door its_door,
+        ConsoleServices services)
+      : options(ground_options),
+        clock(its_clock),
+        door(std::move(its_door)),
         feed(options, clock, inbox),
         session{.clock = clock,
                 .hub = hub,

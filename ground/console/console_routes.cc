@@ -27,8 +27,9 @@ WebReply JsonReply(const google::protobuf::Message& message) {
 }  // namespace
 
 WebHandlers ConsoleRoutes::Handlers() {
-  return {.request = [this](const WebRequest& request, Reply reply) { Answer(request, reply); },
-          .socket = [this](const WebRequest& request) { return Accept(request); }};
+  return {
+      .request = [this](const WebRequest& request, const Reply& reply) { Answer(request, reply); },
+      .socket = [this](const WebRequest& request) { return Accept(request); }};
 }
 
 live::Scan ConsoleRoutes::KeptScan() const {

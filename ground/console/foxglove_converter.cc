@@ -251,7 +251,7 @@ void FoxgloveConverter::ConvertPath(const live::Path& path, std::vector<Foxglove
 void FoxgloveConverter::ConvertGuidance(const live::Guidance& guidance, const Wants& /*wants*/,
                                         std::vector<FoxgloveData>& data) {
   data.push_back({FoxgloveTopic::kGuidance, time_ns_, guidance.SerializeAsString()});
-  const std::string text = guidance.advice();
+  const std::string& text = guidance.advice();
   if (text == told_) return;
   told_ = text;
   foxglove::Log log;
