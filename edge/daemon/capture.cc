@@ -49,6 +49,7 @@ bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
 struct CaptureBegin {
   SteadyTime time;
   ProcessorTimes processor;
+  double cameras_s = 0.0;  ///< By processes of cameras of scans before.
 };
 
 /// Returns what the capture has cost, to be asked for while its threads still live.
@@ -57,8 +58,8 @@ std::string ProcessorText(const CaptureBegin& begin, SteadyTime now) {
 }
 
 /// Completes that, once the processes of cameras have ended.
-void PrintProcessorText(const std::string& text) {
-  const double cameras_s = ProcessorTimeOfChildren_s();
+void PrintProcessorText(const std::string& text, const CaptureBegin& begin) {
+  const double cameras_s = ProcessorTimeOfChildren_s() - begin.cameras_s;
   std::fputs(text.c_str(), stdout);
   std::fputs(
       cameras_s > 0.0 ? fmt::format("; processes of cameras {:.1f} s\n", cameras_s).c_str() : "\n",
@@ -91,11 +92,12 @@ class Scan {
   CaptureEnd Run();
 
  private:
-  enum class Next { kGoOn, kLeave, kAnotherScan };
+  enum class Next { kLeave, kAnotherScan };
 
   Next RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer);
   /// Ends the cameras of a scan that was ordered to stop; what they have sent is still under way.
-  Next EndCameras();
+  /// Returns false if one does not end.
+  bool EndCameras();
   /// Closes the recording of a scan of which nothing is under way any more.
   void CloseRecording();
   /// Ends the recording, then the link, each in its time; `say` tells what was done. The process's
@@ -104,7 +106,8 @@ class Scan {
 
   const CaptureParts& parts_;
   const bool is_recorded_;
-  const CaptureBegin begin_{parts_.clock.SteadyNow(), ReadProcessorTimes()};
+  const CaptureBegin begin_{parts_.clock.SteadyNow(), ReadProcessorTimes(),
+                            ProcessorTimeOfChildren_s()};
   EdgePipeline pipeline_;
   ScanOrders orders_;
   std::string cost_;  ///< ProcessorText, once the scan is over.
@@ -128,7 +131,7 @@ CaptureEnd Scan::Run() {
   if (cost_.empty()) cost_ = ProcessorText(begin_, clock.SteadyNow());
   const auto say = [this] {
     PrintSummary(parts_, pipeline_, is_recorded_);
-    PrintProcessorText(cost_);
+    PrintProcessorText(cost_, begin_);
   };
   if (next == Next::kLeave) {
     NotifyStopping();
@@ -141,18 +144,18 @@ CaptureEnd Scan::Run() {
 }
 
 Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
-  Next next = Next::kGoOn;
-  while (next == Next::kGoOn && !parts_.stop.stop_requested()) {
+  while (!parts_.stop.stop_requested()) {
     monitor.Tick();
     announcer.Tick();
     for (const Command& order : pipeline_.TakeScanOrders()) {
       pipeline_.Answer(orders_.Execute(order));
     }
     if (orders_.state() == ScanOrders::State::kStarting) return Next::kAnotherScan;
-    if (orders_.state() == ScanOrders::State::kEnding) next = EndCameras();
+    const bool ordered = orders_.state() == ScanOrders::State::kEnding;
+    // The service manager starts the program anew.
+    if (ordered && !EndCameras()) return Next::kLeave;
     if (pipeline_.finished()) {
       if (parts_.options.exit_at_end()) return Next::kLeave;
-      const bool ordered = orders_.state() == ScanOrders::State::kEnding;
       if (orders_.NoteFinished()) {
         LOG(Edge, Info)
             << (ordered ? "the scan has ended as ordered" : "the source has ended")
@@ -165,10 +168,10 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
   return Next::kLeave;
 }
 
-Scan::Next Scan::EndCameras() {
-  if (pipeline_.StopCapture(stop_limits::kCameras)) return Next::kGoOn;
+bool Scan::EndCameras() {
+  if (pipeline_.StopCapture(stop_limits::kCameras)) return true;
   LOG(Edge, Error) << "the scan was ordered to stop, and a camera does not end";
-  return Next::kLeave;  // The service manager starts the program anew.
+  return false;
 }
 
 void Scan::CloseRecording() {

@@ -119,6 +119,7 @@ function widened(model: [number, number]): [number, number] {
   const [min, max] = [Math.floor(model[0] / step) * step, Math.ceil(model[1] / step) * step];
   return Number.isFinite(min_celsius) && Number.isFinite(max_celsius) ? [Math.min(min_celsius, min), Math.max(max_celsius, max)] : [min, max];
 }
+let shownSpan: [number, number] | undefined;
 function applySpan(): void {
   const { locked, widens, min_celsius, max_celsius } = looks.value;
   let span: [number, number] | null = [min_celsius, max_celsius];
@@ -132,7 +133,8 @@ function applySpan(): void {
     }
     if (span && span[1] - span[0] < 0.5) span = [span[0] - 0.25, span[1] + 0.25];
   }
-  if (!span) return;
+  if (!span || (span[0] === shownSpan?.[0] && span[1] === shownSpan[1])) return;
+  shownSpan = span;
   view.surfaceMaterial.setSpan(span[0], span[1]);
   legend.setSpan(span[0], span[1]);
   view.invalidate();

@@ -24,6 +24,8 @@ export class SurfaceModel {
   private readonly early = new Map<string, DecodedDetails>();
   model = 0n;
   triangles = 0;
+  /** null: to be found anew, after a change. */
+  private spanShown: [number, number] | null = null;
   /** Codes of temperatures, thinned out, for spans that follow the model. */
   onChange: () => void = () => undefined;
   onFirst: () => void = () => undefined;
@@ -84,6 +86,10 @@ export class SurfaceModel {
 
   /** Span of the apparent temperatures: the middle 98 %. */
   span(): [number, number] | null {
+    this.spanShown ??= this.spanOfAll();
+    return this.spanShown;
+  }
+  private spanOfAll(): [number, number] | null {
     const all: number[] = [];
     for (const { measured } of this.shown.values()) all.push(...measured);
     if (all.length === 0) return null;
@@ -133,6 +139,7 @@ export class SurfaceModel {
     const stride = 2 * Math.max(1, Math.floor(decoded.temperatures.length / 2 / 50));
     for (let i = 0; i < decoded.temperatures.length; i += stride)
       if (decoded.temperatures[i]! > 0) measured.push(decoded.temperatures[i]!);
+    this.spanShown = null;
     this.shown.set(decoded.id, { key: group.key!, version: group.version, mesh, measured });
     this.triangles += decoded.indices.length / 3;
     const early = this.early.get(decoded.id);
@@ -160,5 +167,6 @@ export class SurfaceModel {
     shown.mesh.removeFromParent();
     shown.mesh.geometry.dispose();
     this.shown.delete(id);
+    this.spanShown = null;
   }
 }
