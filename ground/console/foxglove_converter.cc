@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstring>
