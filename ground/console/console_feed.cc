@@ -34,6 +34,7 @@ void ConsoleFeed::AfterDepth(const FrameHeader& header, const DepthReport& repor
                              const ScanModel& scan) {
   if (report.repeated) return;
   inbox_.is_behind = true;
+  newest_ = header.capture_time;
   const SteadyTime start = clock_.SteadyNow();
   inbox_.Add(
       FramePose{.scan = scan_,
@@ -59,6 +60,7 @@ void ConsoleFeed::CopyModel(const ScanModel& scan, Nanoseconds time) {
   if (!batch) return;
   CopyBudget budget{.time = time};
   if (scan.spiller.spilled() > 0) budget.reach_m = kConsoleReach_m;
+  batch->capture_time = newest_;
   const bool any = copier_.Copy(scan.atlas, scan.view.T_map_depth, budget, *batch);
   if (!any) inbox_.is_behind = false;
   cost_.copied_blocks += batch->blocks.size();

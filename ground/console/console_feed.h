@@ -54,6 +54,7 @@ class ConsoleFeed {
   ConsoleInbox& inbox_;
   ModelCopier copier_;
   std::uint64_t scan_ = 0;
+  CaptureTime newest_{};  ///< Of the depth frames.
   ConsoleCost cost_;
 };
 

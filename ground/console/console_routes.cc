@@ -1,30 +1,13 @@
 #include "ground/console/console_routes.h"
 
-#include <google/protobuf/util/json_util.h>
-
 #include <algorithm>
 
 #include "ground/console/foxglove_session.h"
+#include "ground/console/json_reply.h"
+#include "ground/console/place_query.h"
 #include "ground/console/text_reply.h"
 
 namespace isotherm {
-namespace {
-
-WebReply JsonReply(const google::protobuf::Message& message) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.always_print_primitive_fields = true;
-  options.preserve_proto_field_names = true;
-  options.add_whitespace = true;
-  std::string json;
-  static_cast<void>(google::protobuf::util::MessageToJsonString(message, &json, options));
-  WebReply reply;
-  reply.content_type = "application/json";
-  reply.headers = {{"Cache-Control", "no-store"}};
-  reply.body = std::make_shared<const std::string>(std::move(json));
-  return reply;
-}
-
-}  // namespace
 
 WebHandlers ConsoleRoutes::Handlers() {
   return {
@@ -59,6 +42,11 @@ void ConsoleRoutes::Answer(const WebRequest& request, const Reply& reply) {
     answer = access_.LogIn(request);
   } else if (is_api && !access_.RoleOf(request)) {
     answer = TextReply(401, "log in first: POST the code to /api/login\n");
+  } else if (request.path == kQueryPath) {
+    return AskForPlace(request, session_.inbox, [reply](WebReply record) {
+      AddSafetyHeaders(record);
+      reply(std::move(record));
+    });
   } else if (ResultDownloads::IsFor(request)) {
     answer = downloads_.Answer(request, KeptScan());
   } else if (request.path == "/api/state" || request.path == "/api/scan" ||

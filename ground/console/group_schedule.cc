@@ -4,27 +4,28 @@
 
 namespace isotherm {
 
-void GroupSchedule::Note(const GroupKey& key) {
+void GroupSchedule::Note(const GroupKey& key, CaptureTime time) {
   Group& group = groups_[key];
   if (group.is_waiting) return;
   group.is_waiting = true;
+  group.changed = time;
   ++waiting_;
 }
 
 void GroupSchedule::NoteBlock(int map, const GridIndex& block,
-                              const Eigen::Vector3i& blocks_of_grid) {
+                              const Eigen::Vector3i& blocks_of_grid, CaptureTime time) {
   // Points near the border of a group are made with voxels of the next block.
   const GridIndex low = (block - GridIndex::Ones()).cwiseMax(0) / kGroupBlocks;
   const GridIndex high =
       (block + GridIndex::Ones()).cwiseMin(blocks_of_grid - GridIndex::Ones()) / kGroupBlocks;
   for (int z = low.z(); z <= high.z(); ++z) {
     for (int y = low.y(); y <= high.y(); ++y) {
-      for (int x = low.x(); x <= high.x(); ++x) Note({map, x, y, z});
+      for (int x = low.x(); x <= high.x(); ++x) Note({map, x, y, z}, time);
     }
   }
 }
 
-std::optional<GroupKey> GroupSchedule::Take(SteadyTime now, int active_map,
+std::optional<DueGroup> GroupSchedule::Take(SteadyTime now, int active_map,
                                             const Eigen::Vector3d& rig_group) {
   // What is in another sub-map is as far as can be.
   constexpr double kElsewhere = 1e6;
@@ -48,7 +49,7 @@ std::optional<GroupKey> GroupSchedule::Take(SteadyTime now, int active_map,
   best->second.is_waiting = false;
   best->second.made = now;
   --waiting_;
-  return best->first;
+  return DueGroup{.key = best->first, .changed = best->second.changed};
 }
 
 }  // namespace isotherm

@@ -10,6 +10,12 @@
 
 namespace isotherm {
 
+/// A group whose surface is to be made.
+struct DueGroup {
+  GroupKey key;
+  CaptureTime changed{};  ///< When it changed first since it was last made.
+};
+
 /// Decides which group's surface is made next: first those that were never made, the nearest to
 /// the rig first; then those that have changed, no more often than an interval, the longest
 /// outdated and nearest first. Owns no clock. Thread-bound.
@@ -21,18 +27,21 @@ class GroupSchedule {
     groups_.clear();
     waiting_ = 0;
   }
-  /// A block has changed: so may the surface of its group and of those that touch the block.
-  void NoteBlock(int map, const GridIndex& block, const Eigen::Vector3i& blocks_of_grid);
+  /// A block has changed with the frame of `time`: so may the surface of its group and of those
+  /// that touch the block.
+  void NoteBlock(int map, const GridIndex& block, const Eigen::Vector3i& blocks_of_grid,
+                 CaptureTime time);
   /// Returns the next group to make, which then counts as made; nullopt if none is due.
-  std::optional<GroupKey> Take(SteadyTime now, int active_map, const Eigen::Vector3d& rig_group);
+  std::optional<DueGroup> Take(SteadyTime now, int active_map, const Eigen::Vector3d& rig_group);
   std::size_t waiting() const { return waiting_; }
 
  private:
   struct Group {
     bool is_waiting = false;
+    CaptureTime changed{};
     std::optional<SteadyTime> made;
   };
-  void Note(const GroupKey& key);
+  void Note(const GroupKey& key, CaptureTime time);
 
   const Nanoseconds interval_;
   std::map<GroupKey, Group> groups_;

@@ -14,10 +14,12 @@ const Eigen::Vector3i kBlocks(40, 40, 40);
 class GroupScheduleTest : public ::testing::Test {
  protected:
   /// A block in the middle of group (x, 0, 0): it touches no other.
-  void NoteGroup(int x, int map = 0) { schedule_.NoteBlock(map, {4 * x + 1, 1, 1}, kBlocks); }
+  void NoteGroup(int x, int map = 0, CaptureTime time = {}) {
+    schedule_.NoteBlock(map, {4 * x + 1, 1, 1}, kBlocks, time);
+  }
   int TakeX(SteadyTime now, const Eigen::Vector3d& rig = Eigen::Vector3d::Zero()) {
-    const auto key = schedule_.Take(now, 0, rig);
-    return key ? key->x : -1;
+    const auto due = schedule_.Take(now, 0, rig);
+    return due ? due->key.x : -1;
   }
   const SteadyTime start_{1h};
   GroupSchedule schedule_{1s};
@@ -46,6 +48,15 @@ TEST_F(GroupScheduleTest, AGroupIsMadeAgainNoSoonerThanItsInterval) {
   EXPECT_EQ(TakeX(start_ + 1s), 1);
 }
 
+TEST_F(GroupScheduleTest, AGroupIsAsOldAsItsFirstChange) {
+  const CaptureTime first = CaptureTimeFromNanoseconds(5), later = CaptureTimeFromNanoseconds(9);
+  NoteGroup(1, 0, first);
+  NoteGroup(1, 0, later);
+  EXPECT_EQ(schedule_.Take(start_, 0, Eigen::Vector3d::Zero())->changed, first);
+  NoteGroup(1, 0, later);
+  EXPECT_EQ(schedule_.Take(start_ + 1s, 0, Eigen::Vector3d::Zero())->changed, later);
+}
+
 TEST_F(GroupScheduleTest, NewSurfaceComesBeforeBetterSurface) {
   NoteGroup(0);
   EXPECT_EQ(TakeX(start_), 0);
@@ -68,10 +79,11 @@ TEST_F(GroupScheduleTest, FarGroupsGetTheirTurn) {
 }
 
 TEST_F(GroupScheduleTest, ABlockAtABorderChangesTheGroupsBesideIt) {
-  schedule_.NoteBlock(0, {4, 4, 4}, kBlocks);
+  schedule_.NoteBlock(0, {4, 4, 4}, kBlocks, {});
   EXPECT_EQ(schedule_.waiting(), 8U);
   schedule_.Clear();
-  schedule_.NoteBlock(0, {0, 1, 1}, kBlocks);  // At the volume's border there is nobody beside it.
+  // At the volume's border there is nobody beside it.
+  schedule_.NoteBlock(0, {0, 1, 1}, kBlocks, {});
   EXPECT_EQ(schedule_.waiting(), 1U);
 }
 
@@ -80,7 +92,7 @@ TEST_F(GroupScheduleTest, WhatIsInTheActiveSubMapComesFirst) {
   NoteGroup(9, 0);
   const auto first = schedule_.Take(start_, 0, Eigen::Vector3d::Zero());
   ASSERT_TRUE(first);
-  EXPECT_EQ(first->map, 0);
+  EXPECT_EQ(first->key.map, 0);
 }
 
 }  // namespace

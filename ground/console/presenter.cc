@@ -148,7 +148,7 @@ void Presenter::Handle(ScanEnded& ended) {
     for (int map = 0; map < model_.size(); ++map) {
       const TsdfVolume& tsdf = *model_.map(map).tsdf;
       for (std::int32_t block = 0; block < tsdf.block_count(); ++block)
-        schedule_.NoteBlock(map, tsdf.block_coordinates(block), tsdf.grid().blocks);
+        schedule_.NoteBlock(map, tsdf.block_coordinates(block), tsdf.grid().blocks, {});
     }
     measures_.NoteModel();
   }
@@ -253,7 +253,7 @@ void Presenter::TakeBatch(const BlockBatch& batch) {
   }
   measures_.NoteModel();
   for (const CopiedBlock& block : batch.blocks)
-    schedule_.NoteBlock(batch.map, block.coordinates, batch.grid.blocks);
+    schedule_.NoteBlock(batch.map, block.coordinates, batch.grid.blocks, batch.capture_time);
   if (!scan_.has_volume_min()) {
     SetVolume(batch.grid);
     PublishScan();
@@ -290,16 +290,17 @@ Nanoseconds Presenter::MakeGroup() {
     rig_group =
         (pose_.T_map_depth.translation() - grid.min_m) / (kGroupBlocks * grid.block_size_m());
   }
-  const std::optional<GroupKey> key = schedule_.Take(now, active, rig_group);
-  if (!key) return schedule_.waiting() > 0 ? Nanoseconds(20ms) : kMaxWait;
-  MakeGroup(*key);
+  const std::optional<DueGroup> due = schedule_.Take(now, active, rig_group);
+  if (!due) return schedule_.waiting() > 0 ? Nanoseconds(20ms) : kMaxWait;
+  MakeGroup(*due);
   const Nanoseconds taken = clock_.SteadyNow() - now;
   const double cores = options_.console().expert().mesh_cores();
   next_group_ = now + FromSeconds(ToSeconds(taken) / std::clamp(cores, 0.01, 1.0));
   return next_group_ - clock_.SteadyNow();
 }
 
-void Presenter::MakeGroup(const GroupKey& key) {
+void Presenter::MakeGroup(const DueGroup& due) {
+  const GroupKey& key = due.key;
   const ReadableMap& map = model_.map(key.map);
   if (!map.tsdf) return;
   const Surface surface = mesher_.Extract(*map.tsdf, *map.thermal, BlocksOf(key));
@@ -310,6 +311,7 @@ void Presenter::MakeGroup(const GroupKey& key) {
   const std::uint32_t version = ++versions_[key];
   EncodedGroup encoded = EncodeGroup(key, version, grid, surface);
   encoded.group.set_capture_time_ns(newest_capture_ns_);
+  encoded.group.set_changed_time_ns(static_cast<std::uint64_t>(ToNanoseconds(due.changed)));
   const Eigen::Vector3d centre = map.place.T_world_map * GroupCentre(grid, key);
   const auto publish = [&](LiveKind kind, const live::ServerMessage& message) {
     auto sent = std::make_shared<LiveMessage>();

@@ -68,7 +68,7 @@ class Presenter {
   void BeginModel();
   /// Makes one group if one is due and there is time for it. Returns how long to wait for the next.
   Nanoseconds MakeGroup();
-  void MakeGroup(const GroupKey& key);
+  void MakeGroup(const DueGroup& due);
   void ShowImages(SteadyTime now);
   void ShowRawImages(const DepthFramePtr& depth, const ThermalFramePtr& thermal);
   void ShowState(SteadyTime now);

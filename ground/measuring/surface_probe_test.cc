@@ -10,6 +10,7 @@ namespace isotherm {
 namespace {
 
 using testing::kPlate_m;
+using testing::kPlateVoxel_m;
 using testing::PlateModel;
 
 /// A plane's zero crossings lie on it but for the quantised distances and the margin at the ends of
@@ -37,6 +38,19 @@ TEST_F(SurfaceProbeTest, ARayMeetsThePlaneWhereItMust) {
     EXPECT_NEAR((hit->point - target).head<2>().norm(), 0.0, 2.0 * kOnPlane_m);
     EXPECT_NEAR(hit->distance_m, (target - origin).norm(), 2.0 * kOnPlane_m);
     EXPECT_LT(hit->normal.z(), -0.999F);
+  }
+}
+
+TEST_F(SurfaceProbeTest, ARayAlongTheBordersOfVoxelsAndBlocksFallsThroughNoCrack) {
+  SurfaceProbe probe = Probe();
+  constexpr double kHalf_m = kPlateVoxel_m / 2.0;
+  for (int y = 8; y <= 80; ++y) {
+    for (int x = 8; x <= 80; ++x) {
+      const Eigen::Vector3d origin(kHalf_m * x, kHalf_m * y, -0.3);
+      const auto hit = probe.Cast({origin, Eigen::Vector3d::UnitZ()}, kFar_m);
+      ASSERT_TRUE(hit) << origin.transpose();
+      EXPECT_NEAR(hit->point.z(), kPlate_m, kOnPlane_m);
+    }
   }
 }
 

@@ -144,7 +144,8 @@ export class SurfaceModel {
     this.triangles += decoded.indices.length / 3;
     const early = this.early.get(decoded.id);
     if (early) this.detail(early);
-    if (group.version === 1 && this.latencies_ms.length < 5000) this.latencies_ms.push(Date.now() - Number(group.captureTimeNs / 1000000n));
+    if (group.version === 1 && group.changedTimeNs > 0n && this.latencies_ms.length < 5000)
+      this.latencies_ms.push(Date.now() - Number(group.changedTimeNs / 1000000n));
     if (isFirst) this.onFirst();
     this.onChange();
   }

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include "ground/console/web_server.h"
+
+namespace isotherm {
+
+/// Returns a reply that shows all fields of `message` by the names that they have in its file, as
+/// JSON.
+WebReply JsonReply(const google::protobuf::Message& message);
+
+}  // namespace isotherm
