@@ -22,6 +22,7 @@ constexpr std::array<std::uint8_t, 16> kStart = {0x89, 'P', 'N', 'G', '\r', '\n'
 constexpr std::size_t kHeadBytes = kStart.size() + 4 + 4 + 2;
 /// The level of zlib, 0..9: half the size that run lengths only give shaded surfaces.
 constexpr int kCompression = 6;
+constexpr int kFastCompression = 1;
 /// Deflate packs at most 1032 bytes into one.
 constexpr std::uint64_t kMaxRatio = 1032;
 
@@ -134,7 +135,7 @@ class PngWriter {
                  static_cast<png_uint_32>(pixels.height), pixels.bits,
                  pixels.channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_level(png_, kCompression);
+    png_set_compression_level(png_, pixels.is_fleeting ? kFastCompression : kCompression);
     png_set_compression_strategy(png_, 0);  // Z_DEFAULT_STRATEGY
     png_write_info(png_, info_);
     if (pixels.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png_);

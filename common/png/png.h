@@ -35,6 +35,8 @@ struct PngPixels {
   int channels = 3;  ///< 1 grey or 3 colour.
   int bits = 8;      ///< 8, or 16 in the order of this machine.
   std::span<const std::uint8_t> bytes;
+  /// In a third of the time, and larger: for what is looked at once.
+  bool is_fleeting = false;
 };
 
 /// The pixels as a PNG file in memory. kInvalidArgument for an image without pixels.

@@ -53,7 +53,8 @@ void Encode(const Image<float>& values, live::CameraImage& image) {
                               .height = values.height(),
                               .channels = 1,
                               .bits = 8,
-                              .bytes = grey});
+                              .bytes = grey,
+                              .is_fleeting = true});
   if (png) image.set_png(png->data(), png->size());
 }
 

@@ -1,15 +1,23 @@
 #include "ground/console/group_schedule.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace isotherm {
+namespace {
+
+/// Blocks without surface are soon looked at, and the first surface in them is awaited.
+constexpr Nanoseconds kWhileEmpty = std::chrono::milliseconds(100);
+
+}  // namespace
 
 void GroupSchedule::Note(const GroupKey& key, CaptureTime time) {
   Group& group = groups_[key];
   if (group.is_waiting) return;
   group.is_waiting = true;
+  group.key = key;
   group.changed = time;
-  ++waiting_;
+  waiting_.push_back(&group);
 }
 
 void GroupSchedule::NoteBlock(int map, const GridIndex& block,
@@ -29,27 +37,32 @@ std::optional<DueGroup> GroupSchedule::Take(SteadyTime now, int active_map,
                                             const Eigen::Vector3d& rig_group) {
   // What is in another sub-map is as far as can be.
   constexpr double kElsewhere = 1e6;
-  auto best = groups_.end();
+  auto best = waiting_.end();
   double best_score = -std::numeric_limits<double>::infinity();
-  for (auto entry = groups_.begin(); entry != groups_.end(); ++entry) {
-    const auto& [key, group] = *entry;
-    if (!group.is_waiting || (group.made && now - *group.made < interval_)) continue;
+  for (auto entry = waiting_.begin(); entry != waiting_.end(); ++entry) {
+    const Group& group = **entry;
+    const Nanoseconds interval = group.is_shown ? interval_ : std::min(interval_, kWhileEmpty);
+    if (group.made && now - *group.made < interval) continue;
+    const GroupKey& key = group.key;
     const double distance =
         key.map == active_map
             ? (Eigen::Vector3d(key.x + 0.5, key.y + 0.5, key.z + 0.5) - rig_group).norm()
             : kElsewhere;
-    // Seconds outdated per group side of distance; what was never made comes before all.
-    const double score =
-        group.made ? ToSeconds(now - *group.made) / (1.0 + distance) : 1e9 - distance;
+    // Seconds outdated per group side of distance; what shows nothing yet comes before all.
+    const double score = group.is_shown && group.made
+                             ? ToSeconds(now - *group.made) / (1.0 + distance)
+                             : 1e9 - distance;
     if (score <= best_score) continue;
     best_score = score;
     best = entry;
   }
-  if (best == groups_.end()) return std::nullopt;
-  best->second.is_waiting = false;
-  best->second.made = now;
-  --waiting_;
-  return DueGroup{.key = best->first, .changed = best->second.changed};
+  if (best == waiting_.end()) return std::nullopt;
+  Group& group = **best;
+  *best = waiting_.back();
+  waiting_.pop_back();
+  group.is_waiting = false;
+  group.made = now;
+  return DueGroup{.key = group.key, .changed = group.changed, .is_new = !group.is_shown};
 }
 
 }  // namespace isotherm

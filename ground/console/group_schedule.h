@@ -14,30 +14,35 @@ namespace isotherm {
 struct DueGroup {
   GroupKey key;
   CaptureTime changed{};  ///< When it changed first since it was last made.
+  bool is_new = false;    ///< It shows no surface so far.
 };
 
-/// Decides which group's surface is made next: first those that were never made, the nearest to
-/// the rig first; then those that have changed, no more often than an interval, the longest
-/// outdated and nearest first. Owns no clock. Thread-bound.
+/// Decides which group's surface is made next: first those that show none yet, the nearest to the
+/// rig first; then those that have changed, no more often than an interval, the longest outdated
+/// and nearest first. Owns no clock. Thread-bound.
 class GroupSchedule {
  public:
   explicit GroupSchedule(Nanoseconds interval) : interval_(interval) {}
 
   void Clear() {
+    waiting_.clear();
     groups_.clear();
-    waiting_ = 0;
   }
   /// A block has changed with the frame of `time`: so may the surface of its group and of those
   /// that touch the block.
   void NoteBlock(int map, const GridIndex& block, const Eigen::Vector3i& blocks_of_grid,
                  CaptureTime time);
+  /// Says whether a group shows a surface, once it is made.
+  void SetShown(const GroupKey& key, bool is_shown) { groups_[key].is_shown = is_shown; }
   /// Returns the next group to make, which then counts as made; nullopt if none is due.
   std::optional<DueGroup> Take(SteadyTime now, int active_map, const Eigen::Vector3d& rig_group);
-  std::size_t waiting() const { return waiting_; }
+  std::size_t waiting() const { return waiting_.size(); }
 
  private:
   struct Group {
+    GroupKey key;
     bool is_waiting = false;
+    bool is_shown = false;
     CaptureTime changed{};
     std::optional<SteadyTime> made;
   };
@@ -45,7 +50,7 @@ class GroupSchedule {
 
   const Nanoseconds interval_;
   std::map<GroupKey, Group> groups_;
-  std::size_t waiting_ = 0;
+  std::vector<Group*> waiting_;  ///< In no order.
 };
 
 }  // namespace isotherm

@@ -19,7 +19,9 @@ class GroupScheduleTest : public ::testing::Test {
   }
   int TakeX(SteadyTime now, const Eigen::Vector3d& rig = Eigen::Vector3d::Zero()) {
     const auto due = schedule_.Take(now, 0, rig);
-    return due ? due->key.x : -1;
+    if (!due) return -1;
+    schedule_.SetShown(due->key, true);
+    return due->key.x;
   }
   const SteadyTime start_{1h};
   GroupSchedule schedule_{1s};
@@ -64,6 +66,18 @@ TEST_F(GroupScheduleTest, NewSurfaceComesBeforeBetterSurface) {
   NoteGroup(9);
   EXPECT_EQ(TakeX(start_ + 5s), 9);
   EXPECT_EQ(TakeX(start_ + 5s), 0);
+}
+
+TEST_F(GroupScheduleTest, TheFirstSurfaceOfAPlaceComesBeforeAll) {
+  for (const int x : {0, 9}) NoteGroup(x);
+  EXPECT_EQ(TakeX(start_), 0);
+  EXPECT_TRUE(schedule_.Take(start_, 0, Eigen::Vector3d::Zero())->is_new) << "9 shows nothing";
+  for (const int x : {0, 9}) NoteGroup(x);
+  EXPECT_EQ(TakeX(start_ + 50ms), -1) << "nothing is looked at all the time";
+  EXPECT_EQ(TakeX(start_ + 5s), 9);
+  EXPECT_EQ(TakeX(start_ + 5s), 0);
+  NoteGroup(9);
+  EXPECT_FALSE(schedule_.Take(start_ + 6s, 0, Eigen::Vector3d::Zero())->is_new);
 }
 
 TEST_F(GroupScheduleTest, FarGroupsGetTheirTurn) {

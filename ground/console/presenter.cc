@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/processor_time.h"
 #include "ground/console/camera_image.h"
 #include "ground/console/live_convert.h"
 
@@ -25,6 +26,18 @@ SurfaceOptions MeshOptions(const GroundOptions& options) {
   SurfaceOptions mesh;
   mesh.min_weight = static_cast<float>(options.export_().expert().min_weight());
   return mesh;
+}
+
+/// Returns false if nothing in the group, or beside its upper ends, is behind a surface.
+bool MayHaveSurface(const TsdfVolume& tsdf, const GroupKey& key) {
+  constexpr int kSide = kGroupBlocks + 1;
+  const GridIndex first = kGroupBlocks * GridIndex(key.x, key.y, key.z);
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    const std::int32_t block =
+        tsdf.Find(first + GridIndex(i % kSide, i / kSide % kSide, i / (kSide * kSide)));
+    if (block != TsdfVolume::kNoBlock && tsdf.may_end_rays(block)) return true;
+  }
+  return false;
 }
 
 live::Answer AnswerTo(const live::ClientMessage& message, bool done, std::string text) {
@@ -73,7 +86,6 @@ void Presenter::BeginModel() {
   ++model_number_;
   schedule_.Clear();
   versions_.clear();
-  has_surface_.clear();
   shown_maps_.clear();
   path_.Clear();
 }
@@ -292,21 +304,24 @@ Nanoseconds Presenter::MakeGroup() {
   }
   const std::optional<DueGroup> due = schedule_.Take(now, active, rig_group);
   if (!due) return schedule_.waiting() > 0 ? Nanoseconds(20ms) : kMaxWait;
+  const Nanoseconds worked_before = ThreadProcessorTime();
   MakeGroup(*due);
-  const Nanoseconds taken = clock_.SteadyNow() - now;
+  // The first surface of a place is awaited; better ones may take their time.
+  if (due->is_new) return Nanoseconds(0);
+  const Nanoseconds worked = ThreadProcessorTime() - worked_before;
   const double cores = options_.console().expert().mesh_cores();
-  next_group_ = now + FromSeconds(ToSeconds(taken) / std::clamp(cores, 0.01, 1.0));
+  next_group_ = now + FromSeconds(ToSeconds(worked) / std::clamp(cores, 0.01, 1.0));
   return next_group_ - clock_.SteadyNow();
 }
 
 void Presenter::MakeGroup(const DueGroup& due) {
   const GroupKey& key = due.key;
   const ReadableMap& map = model_.map(key.map);
-  if (!map.tsdf) return;
+  if (!map.tsdf || (due.is_new && !MayHaveSurface(*map.tsdf, key))) return;
   const Surface surface = mesher_.Extract(*map.tsdf, *map.thermal, BlocksOf(key));
-  bool& had_surface = has_surface_[key];
   const bool has_surface = !surface.triangles.empty();
-  if (!std::exchange(had_surface, has_surface) && !has_surface) return;
+  if (due.is_new && !has_surface) return;
+  schedule_.SetShown(key, has_surface);
   const VoxelGrid& grid = map.tsdf->grid();
   const std::uint32_t version = ++versions_[key];
   EncodedGroup encoded = EncodeGroup(key, version, grid, surface);

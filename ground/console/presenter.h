@@ -96,7 +96,6 @@ class Presenter {
   MeasureBoard measures_;
   PartMesher mesher_;
   std::map<GroupKey, std::uint32_t> versions_;  ///< Newest that was made of each.
-  std::map<GroupKey, bool> has_surface_;
   RigPath path_;
   FramePose pose_;
   std::uint64_t newest_capture_ns_ = 0;

@@ -42,15 +42,15 @@ Surface PartMesher::Extract(const TsdfVolume& tsdf, const ThermalVolume& thermal
     surface.points.insert(surface.points.end(), part.crossings.points.begin(),
                           part.crossings.points.end());
   }
-  BlockSamples samples;
+  BlockSigns signs;
   for (const std::int32_t block : blocks) {
-    if (!cells.Gather(block, samples)) continue;
+    if (!cells.Gather(block, signs)) continue;
     const GridIndex& coordinates = tsdf.block_coordinates(block);
     const auto find = [&](const GridIndex& step, std::uint16_t key) {
       const std::int32_t owner = tsdf.Find(coordinates + step);
       return owner == TsdfVolume::kNoBlock ? kNoPoint : FindCrossing(PartOf(owner).crossings, key);
     };
-    cubes_.Add(samples, find, surface.triangles);
+    cubes_.Add(signs, find, surface.triangles);
   }
   return surface.MeshOnly();
 }

@@ -76,8 +76,8 @@ class Extractor {
   }
 
   void FindTriangles(std::int32_t block, std::vector<Eigen::Vector3i>& triangles) const {
-    BlockSamples samples;
-    if (!cells_.Gather(block, samples)) return;
+    BlockSigns signs;
+    if (!cells_.Gather(block, signs)) return;
     const GridIndex& coordinates = tsdf_.block_coordinates(block);
     const auto find = [&](const GridIndex& step, std::uint16_t key) {
       const std::int32_t owner = tsdf_.Find(coordinates + step);
@@ -85,7 +85,7 @@ class Extractor {
       const std::int32_t position = position_[static_cast<std::size_t>(owner)];
       return FindCrossing(crossings_[static_cast<std::size_t>(position)], key);
     };
-    cubes_.Add(samples, find, triangles);
+    cubes_.Add(signs, find, triangles);
   }
 
   const TsdfVolume& tsdf_;

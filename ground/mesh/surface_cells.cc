@@ -1,7 +1,6 @@
 #include "ground/mesh/surface_cells.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "ground/mesh/face_measurement.h"
 #include "ground/thermal/condition_record.h"
@@ -10,10 +9,12 @@
 namespace isotherm {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 // Crossings keep this fraction of an edge's length from its ends, so that no triangle has zero
 // area. At 2 mm voxels it moves a point by at most 10 um.
 constexpr float kEndMargin = 0.005F;
+
+// Of a sample. The last is of no use beyond its row.
+constexpr std::uint8_t kInside = 1, kUnobserved = 1 << kUnobservedBit, kOutside = 4;
 
 bool IsAskedFor(VoxelLayers layers, const GridIndex& local) {
   if ((layers & kWholeBlock) != 0) return true;
@@ -26,10 +27,25 @@ bool IsAskedFor(VoxelLayers layers, const GridIndex& local) {
 
 }  // namespace
 
-bool SurfaceCells::Gather(std::int32_t block, BlockSamples& samples) const {
-  samples.values.fill(kUnknown);
-  bool inside = false;
-  bool outside = false;
+template <int kCount>
+std::uint8_t SurfaceCells::GatherRow(const TsdfVoxel* voxels, std::size_t index,
+                                     BlockSigns& signs) const {
+  std::uint8_t seen = 0;
+  // Without branches, so that the compiler can do all at once.
+  for (std::size_t x = 0; x < kCount; ++x) {
+    const std::uint32_t bits = voxels[x].bits;
+    const int sign = TsdfLayout::TsdfCode(bits) < 0 ? kInside : kOutside;
+    const bool is_known = static_cast<int>(TsdfLayout::WeightCode(bits)) >= min_weight_code_;
+    const auto byte = static_cast<std::uint8_t>(is_known ? sign : kUnobserved);
+    signs.bytes[index + x] = byte;
+    seen |= byte;
+  }
+  return seen;
+}
+
+bool SurfaceCells::Gather(std::int32_t block, BlockSigns& signs) const {
+  signs.bytes.fill(kUnobserved);
+  std::uint8_t seen = 0;
   for (int neighbour = 0; neighbour < 8; ++neighbour) {
     const GridIndex offset(neighbour & 1, neighbour >> 1 & 1, neighbour >> 2 & 1);
     const std::int32_t source = tsdf_.Find(tsdf_.block_coordinates(block) + offset);
@@ -39,44 +55,54 @@ bool SurfaceCells::Gather(std::int32_t block, BlockSamples& samples) const {
     const GridIndex count = GridIndex::Constant(kBlockSide) - offset * (kBlockSide - 1);
     for (int z = 0; z < count.z(); ++z) {
       for (int y = 0; y < count.y(); ++y) {
-        for (int x = 0; x < count.x(); ++x) {
-          const float value =
-              Sample(voxels[static_cast<std::size_t>(x + kBlockSide * (y + kBlockSide * z))]);
-          samples.values[BlockSamples::Index(offset * kBlockSide + GridIndex(x, y, z))] = value;
-          inside = inside || value < 0.0F;
-          outside = outside || value >= 0.0F;
-        }
+        const TsdfVoxel* row = &voxels[static_cast<std::size_t>(kBlockSide * (y + kBlockSide * z))];
+        const std::size_t index = BlockSigns::Index(offset * kBlockSide + GridIndex(0, y, z));
+        seen |= offset.x() == 0 ? GatherRow<kBlockSide>(row, index, signs)
+                                : GatherRow<1>(row, index, signs);
       }
     }
   }
-  return inside && outside;
-}
-
-bool SurfaceCells::Crosses(float a, float b) const {
-  if (std::isnan(a) || std::isnan(b) || (a < 0.0F) == (b < 0.0F)) return false;
-  return InVoxels(std::abs(a - b)) <= options_.max_slope;
+  return (seen & kInside) != 0 && (seen & kOutside) != 0;
 }
 
 void SurfaceCells::FindCrossings(std::int32_t block, VoxelLayers layers,
                                  BlockCrossings& result) const {
-  BlockSamples samples;
-  if (!Gather(block, samples)) return;
-  const GridIndex base = tsdf_.block_coordinates(block) * kBlockSide;
-  for (int i = 0; i < kBlockVoxels; ++i) {
-    const GridIndex local = LocalVoxel(i);
-    if (!IsAskedFor(layers, local)) continue;
-    const float from = samples.At(local);
-    if (std::isnan(from)) continue;
+  BlockSigns signs;
+  if (!Gather(block, signs)) return;
+  constexpr int kRows = kBlockSide * kBlockSide;
+  for (int row = 0; row < kRows; ++row) {
+    const GridIndex first(0, row % kBlockSide, row / kBlockSide);
+    const SignRow from = signs.Row(first);
+    std::array<SignRow, 3> changes;
+    SignRow any = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const float to = samples.At(local + GridIndex::Unit(axis));
-      if (!Crosses(from, to)) continue;
-      const float along = std::clamp(from / (from - to), kEndMargin, 1.0F - kEndMargin);
-      const std::optional<CloudPoint> point = MakePoint(base + local, axis, along);
-      if (!point) continue;
-      result.keys.push_back(EdgeKey(local, axis));
-      result.points.push_back(*point);
+      const SignRow to = signs.Row(first + GridIndex::Unit(axis));
+      const SignRow change = (from ^ to) & ~((from | to) >> kUnobservedBit) & kInsideBits;
+      changes[static_cast<std::size_t>(axis)] = change;
+      any |= change;
     }
+    VisitBytes(any, [&](int x) {
+      const GridIndex local(x, first.y(), first.z());
+      if (!IsAskedFor(layers, local)) return;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((changes[static_cast<std::size_t>(axis)] >> (8 * x) & 1) != 0)
+          AddCrossing(block, local, axis, result);
+      }
+    });
   }
+}
+
+void SurfaceCells::AddCrossing(std::int32_t block, const GridIndex& local, int axis,
+                               BlockCrossings& result) const {
+  const GridIndex voxel = tsdf_.block_coordinates(block) * kBlockSide + local;
+  const float from = SampleAt(voxel);
+  const float to = SampleAt(voxel + GridIndex::Unit(axis));
+  if (InVoxels(std::abs(from - to)) > options_.max_slope) return;
+  const float along = std::clamp(from / (from - to), kEndMargin, 1.0F - kEndMargin);
+  const std::optional<CloudPoint> point = MakePoint(voxel, axis, along);
+  if (!point) return;
+  result.keys.push_back(EdgeKey(local, axis));
+  result.points.push_back(*point);
 }
 
 Eigen::Vector3f SurfaceCells::Gradient(const GridIndex& voxel) const {
@@ -125,18 +151,6 @@ std::optional<CloudPoint> SurfaceCells::MakePoint(const GridIndex& voxel, int ax
       tsdf_, thermal_,
       tsdf_.grid().min_m + (p_voxel + Eigen::Vector3d::Constant(0.5)) * tsdf_.grid().voxel_size_m,
       normal);
-}
-
-std::optional<int> SurfaceCells::CornersInside(const BlockSamples& samples,
-                                               const GridIndex& local) {
-  int inside = 0;
-  for (int corner = 0; corner < kCubeCorners; ++corner) {
-    const GridIndex offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-    const float value = samples.At(local + offset);
-    if (std::isnan(value)) return std::nullopt;
-    if (value < 0.0F) inside |= 1 << corner;
-  }
-  return inside;
 }
 
 std::uint32_t FindCrossing(const BlockCrossings& crossings, std::uint16_t key) {

@@ -12,7 +12,7 @@ namespace isotherm {
 
 /// How much a copier may do at once.
 struct CopyBudget {
-  Nanoseconds time = std::chrono::microseconds(600);
+  Nanoseconds time = std::chrono::microseconds(500);
   std::int32_t max_blocks = 1024;
   /// Blocks further from the rig than this are left for later, because looking at them would bring
   /// them back from the disk. Infinite: all blocks are in memory.

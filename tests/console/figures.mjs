@@ -67,7 +67,7 @@ function reader(port) {
 const spread = (values) => ({ p50: Math.round(percentile(values, 50)), p95: Math.round(percentile(values, 95)), groups: values.length });
 
 /** `pages`: how many of the viewers are pages, which draw. */
-async function scan(name, viewers, body, pages = Math.min(viewers, 1)) {
+async function scan(name, viewers, body, { pages = Math.min(viewers, 1) } = {}) {
   const stack = new Stack();
   await stack.startGround();
   const browser = await openBrowser();
@@ -110,7 +110,7 @@ if (wanted.includes("reader")) await scan("one viewer that does not draw", 1, as
   const figures = { late_first_ms: Math.round(late.first_ms), late_whole_ms: Math.round(late.last_ms), late_groups: late.groups.size };
   late.close();
   return figures;
-}, 0);
+}, { pages: 0 });
 if (wanted.includes("three")) await scan("three viewers", 3);
 if (wanted.includes("slow")) await scan("a fast viewer beside one with 200 ms and 2 Mbit/s", 1, async (stack, page, browser) => {
   const proxy = await slowProxy(stack.port, { bitsPerSecond: 2e6, delay_ms: 100 });
