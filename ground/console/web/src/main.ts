@@ -76,6 +76,10 @@ const chip = (name: string): { element: HTMLElement; set: (text: string, tone: s
   return { element, set: (text, tone) => { setText(value, text); element.dataset["tone"] = tone; } };
 };
 const chips = { link: chip("Rig"), tracking: chip("Tracking"), nuc: chip("NUC"), rate: chip("Frames"), disk: chip("Disk") };
+/** What is shown from files has no rig: only how well it was tracked is of interest. */
+function showRig(isThere: boolean): void {
+  for (const { element } of [chips.link, chips.nuc, chips.rate, chips.disk]) show(element, isThere);
+}
 const scanName = h("span", { class: "scan-name" }, "Isotherm");
 const offline = h("div", { class: "offline", role: "alert", hidden: true }, "No connection to the ground service. Trying again …");
 const header = h("header", { class: "top" }, h("img", { src: "icon.svg", alt: "", width: 32, height: 32 }), scanName,
@@ -184,6 +188,8 @@ connection.on("scan", (value) => {
   document.title = value.name === "" ? "Isotherm" : `${value.name} · Isotherm`;
   show(empty, value.phase === Scan_Phase.WAITING);
   show(guidance.element, value.phase !== Scan_Phase.FINISHED);
+  show(chips.tracking.element, value.phase !== Scan_Phase.FINISHED);
+  if (value.phase === Scan_Phase.FINISHED) showRig(false);
   if (isNew) {
     if (value.phase === Scan_Phase.FINISHED) looks.set({ follow: false });
     tracking = Tracking.TRACKING_WAITING;
@@ -209,7 +215,10 @@ connection.on("measurements", (value) => {
   measure.set(value);
   measurePanel.set(value);
 });
-connection.on("playback", (value) => playback.set(value));
+connection.on("playback", (value) => {
+  playback.set(value);
+  showRig(false);
+});
 connection.on("path", (path) => view.setPath(path));
 connection.on("guidance", (value) => {
   if (scan?.phase === Scan_Phase.ENDED) return;

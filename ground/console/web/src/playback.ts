@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { PlaybackControlSchema, type Playback } from "./gen/live_pb";
 import type { Connection } from "./connection";
-import { h, segmented, setText } from "./ui";
+import { h, setText } from "./ui";
 
 function clock(seconds: number): string {
   const whole = Math.max(0, Math.round(seconds));
@@ -16,7 +16,7 @@ export class PlaybackBar {
   private readonly slider: HTMLInputElement;
   private readonly play: HTMLButtonElement;
   private readonly time = h("span", { class: "time" });
-  private readonly speed: { element: HTMLElement; set: (value: typeof speeds[number]) => void };
+  private readonly speed: HTMLSelectElement;
   private playing = false;
   private dragging = false;
 
@@ -28,8 +28,10 @@ export class PlaybackBar {
       void this.send({ positionS: Number(this.slider.value) });
     });
     this.play = h("button", { type: "button", class: "primary", title: "Play or pause (space)", onclick: () => this.toggle() }, "Play");
-    this.speed = segmented("Speed", speeds.map((value): [typeof value, string] => [value, `${value}×`]), "1", (value) => void this.send({ speed: Number(value) }));
-    this.element = h("div", { class: "playback", role: "group", "aria-label": "Playback", hidden: true }, this.play, this.slider, this.time, this.speed.element);
+    this.speed = h("select", { "aria-label": "Speed" }, ...speeds.map((value) => h("option", { value }, `${value}×`)));
+    this.speed.value = "1";
+    this.speed.addEventListener("change", () => void this.send({ speed: Number(this.speed.value) }));
+    this.element = h("div", { class: "playback", role: "group", "aria-label": "Playback", hidden: true }, this.play, this.slider, this.time, this.speed);
   }
   toggle(): void {
     if (!this.element.hidden) void this.send({ playing: !this.playing });
@@ -41,7 +43,7 @@ export class PlaybackBar {
     this.slider.max = String(state.durationS);
     if (!this.dragging) this.slider.value = String(state.positionS);
     setText(this.time, state.seeking ? "…" : `${clock(state.positionS)} / ${clock(state.durationS)}`);
-    this.speed.set(speeds.find((value) => Number(value) === state.speed) ?? "1");
+    this.speed.value = speeds.find((value) => Number(value) === state.speed) ?? "1";
   }
   private async send(control: { positionS?: number; speed?: number; playing?: boolean }): Promise<void> {
     await this.connection.ask({ case: "playback", value: create(PlaybackControlSchema, control) });
