@@ -1,9 +1,12 @@
-// The ground when whoever reads its messages stops or is gone, and when its output folder comes
-// late. Edge and ground as two processes over DDS on loopback.
+// The ground when whoever reads its messages stops or is gone, when its output folder comes late,
+// and when it cannot have a console. Edge and ground as two processes over DDS on loopback.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -21,6 +24,7 @@
 namespace isotherm::system_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -105,6 +109,51 @@ TEST_F(GroundOutputTest, F39AFullPipeOfSummariesThatNobodyReadsIsNoStuckDisk) {
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   ExpectTwoScansAndALeave(ground);
   EXPECT_THAT(ground.output(), Not(HasSubstr("stuck")));
+}
+
+/// A port of this computer that somebody else listens on.
+class TakenPort {
+ public:
+  TakenPort() : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    auto* const generic = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(bind(socket_, generic, size), 0);
+    EXPECT_EQ(listen(socket_, 1), 0);
+    EXPECT_EQ(getsockname(socket_, generic, &size), 0);
+    port_ = ntohs(address.sin_port);
+  }
+  ~TakenPort() { close(socket_); }
+  TakenPort(const TakenPort&) = delete;
+  TakenPort& operator=(const TakenPort&) = delete;
+
+  std::string port() const { return std::to_string(port_); }
+
+ private:
+  const int socket_;
+  int port_ = 0;
+};
+
+TEST_F(GroundOutputTest, F75AConsoleWhosePortIsTakenCostsNoScan) {
+  const TakenPort taken;
+  Process ground(Ground({"--set", "console.port=" + taken.port()}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  ExpectTwoScansAndALeave(ground);
+  EXPECT_THAT(ground.output(), AllOf(HasSubstr("there is no console"), HasSubstr(taken.port()),
+                                     HasSubstr("console.port sets another port")));
+}
+
+TEST_F(GroundOutputTest, F75ACertificateThatCannotBeReadCostsNoScan) {
+  const std::string certificate = Path("missing.pem").string();
+  Process ground(Ground({"--set", "console.address=\"0.0.0.0\"", "--set",
+                         "console.state_dir=\"" + Path("state").string() + "\"", "--set",
+                         "console.certificate_file=\"" + certificate + "\"", "--set",
+                         "console.key_file=\"" + certificate + "\""}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  ExpectTwoScansAndALeave(ground);
+  EXPECT_THAT(ground.output(), AllOf(HasSubstr("there is no console"), HasSubstr(certificate)));
 }
 
 TEST_F(GroundOutputTest, F31AnOutputFolderThatIsMissingIsWaitedForAndHasTheScanFromThereOn) {
