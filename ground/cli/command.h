@@ -35,6 +35,7 @@ std::string_view SoftwareName();
 void AddImportCommand(CLI::App& app, CommandBody& body);
 void AddInspectCommand(CLI::App& app, CommandBody& body);
 void AddConvertCommand(CLI::App& app, CommandBody& body);
+void AddMergeRecordingsCommand(CLI::App& app, CommandBody& body);
 void AddOptionsCommand(CLI::App& app, CommandBody& body);
 void AddReconstructCommand(CLI::App& app, CommandBody& body);
 void AddRenderCommand(CLI::App& app, CommandBody& body);

@@ -5,13 +5,10 @@
 #include <map>
 #include <memory>
 
-#include "common/base/partial_file.h"
-#include "common/base/progress.h"
-#include "common/base/service.h"
 #include "common/dataset/trajectory.h"
 #include "common/options/nearest_name.h"
 #include "ground/cli/command.h"
-#include "ground/cli/convert_recording.h"
+#include "ground/cli/conversion.h"
 
 namespace isotherm {
 namespace {
@@ -43,7 +40,7 @@ std::map<std::string, int> NumbersOfDefects() {
 
 struct ConvertArguments {
   std::string recording, output, trajectory;
-  int storage = static_cast<int>(ImageStorage::kViewable);
+  ImageStorage storage = ImageStorage::kViewable;
   int defect = static_cast<int>(DepthDefect::kNone);
   bool force = false;
 };
@@ -79,29 +76,16 @@ void Print(const ConvertSummary& summary, const ConvertArguments& arguments) {
 }
 
 int Run(const ConvertArguments& arguments) {
-  const StopSignal signal;  // Before any other thread.
-  const auto poses = PosesOf(arguments.trajectory);
+  auto poses = PosesOf(arguments.trajectory);
   if (!poses) return Fail(poses.error());
-  const Result<PartialFile> target = PartialFile::Create(arguments.output, arguments.force);
-  if (!target) return Fail(target.error());
   ConvertRequest request;
   request.recording = arguments.recording;
-  request.output = target->path();
-  request.storage = static_cast<ImageStorage>(arguments.storage);
-  request.poses = *poses;
+  request.storage = arguments.storage;
+  request.poses = std::move(*poses);
   request.defect = static_cast<DepthDefect>(arguments.defect);
-  request.stop = signal.token();
-  std::optional<ProgressBar> progress;
-  request.progress = [&](double fraction) {
-    if (!progress) progress.emplace("converting", 0, "");
-    progress->Update(fraction);
-  };
-  const Result<ConvertSummary> summary = ConvertRecording(request);
+  const Result<ConvertSummary> summary = ConvertInto(
+      {.output = arguments.output, .force = arguments.force, .verb = "converting"}, request);
   if (!summary) return Fail(summary.error());
-  // The recording gets its name when it is complete: an interrupted conversion leaves nothing.
-  if (const Status named = target->Commit(); !named.ok()) return Fail(named);
-  if (progress) progress->Finish();
-  progress.reset();
   Print(*summary, arguments);
   return 0;
 }
@@ -114,14 +98,8 @@ void AddConvertCommand(CLI::App& app, CommandBody& body) {
   auto arguments = std::make_shared<ConvertArguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_option("-o,--output", arguments->output, "Recording to write (.mcap)")->required();
-  command
-      ->add_option("--encoding", arguments->storage,
-                   "viewable (default; Foxglove and Lichtblick show it) or compact")
-      ->transform(
-          CLI::Validator(NumberOfName({{"viewable", static_cast<int>(ImageStorage::kViewable)},
-                                       {"compact", static_cast<int>(ImageStorage::kCompact)}}),
-                         ""))
-      ->type_name("KIND");
+  AddEncodingOption(*command, arguments->storage,
+                    "viewable (default; Foxglove and Lichtblick show it) or compact");
   command->add_option("--trajectory", arguments->trajectory,
                       "Poses of the rig: result folder, or trajectory.txt");
   command

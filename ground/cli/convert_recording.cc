@@ -72,23 +72,6 @@ class OtherMessages {
   mcap::MessageStream stream_;
 };
 
-CaptureTime TimeOf(const RecordedItem& item) {
-  struct Visitor {
-    CaptureTime operator()(const RecordedDepth& depth) const {
-      return depth.frame.header.capture_time;
-    }
-    CaptureTime operator()(const RecordedThermal& thermal) const {
-      return thermal.frame.header.capture_time;
-    }
-    CaptureTime operator()(const NucEvent& event) const { return event.start; }
-    CaptureTime operator()(const RecordedPose& pose) const { return pose.pose.time; }
-    CaptureTime operator()(const ExternalOdometry& pose) const { return pose.time; }
-    CaptureTime operator()(const RecordedLog& log) const { return log.time; }
-    CaptureTime operator()(const ClockStep& step) const { return step.time; }
-  };
-  return std::visit(Visitor(), item);
-}
-
 /// The tracked pose that a feedback message carries; nullopt while the rig was lost.
 std::optional<StampedPose> PoseOf(const OtherMessage& message) {
   if (message.topic != kFeedbackRecordTopic) return std::nullopt;
@@ -286,10 +269,19 @@ class Converter {
   ConvertSummary summary_;
 };
 
+Result<std::unique_ptr<RecordingReader>> OpenReader(const ConvertRequest& request) {
+  if (request.others.empty()) return RecordingReader::Open(request.recording);
+  std::vector<std::filesystem::path> paths{request.recording};
+  paths.insert(paths.end(), request.others.begin(), request.others.end());
+  auto merged = MergedRecording::OpenAll(paths);
+  if (!merged) return Err(merged.error());
+  return std::unique_ptr<RecordingReader>(std::move(*merged));
+}
+
 }  // namespace
 
 Result<ConvertSummary> ConvertRecording(const ConvertRequest& request) {
-  auto reader = RecordingReader::Open(request.recording);
+  auto reader = OpenReader(request);
   if (!reader) return Err(reader.error());
   // A second reader of the same file: the first one hides what it does not know.
   auto source = OpenFileSource(request.recording);
@@ -304,8 +296,15 @@ Result<ConvertSummary> ConvertRecording(const ConvertRequest& request) {
   if (!writer) return Err(writer.error());
   Converter converter(request, **reader, others, **writer);
   if (Status status = converter.Run(); !status.ok()) return Err(std::move(status));
+  const auto* merged = dynamic_cast<const MergedRecording*>(reader->get());
+  if (merged != nullptr && !merged->conflict().ok()) return Err(merged->conflict());
   if (Status status = (*writer)->Close(); !status.ok()) return Err(std::move(status));
-  return converter.summary();
+  ConvertSummary summary = converter.summary();
+  if (merged != nullptr) {
+    summary.parts = merged->parts();
+    summary.missing = merged->missing();
+  }
+  return summary;
 }
 
 }  // namespace isotherm

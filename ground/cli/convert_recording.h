@@ -12,6 +12,7 @@
 #include "common/geometry/stamped_pose.h"
 #include "common/recording/recording.h"
 #include "common/simulation/depth_defects.h"
+#include "ground/cli/merged_recording.h"
 
 namespace isotherm {
 
@@ -21,6 +22,9 @@ inline constexpr std::string_view kSpoiledMetadata = "spoiled";
 /// Says which recording becomes which.
 struct ConvertRequest {
   std::filesystem::path recording;
+  /// Further recordings of the same scan, which fill holes (MergedRecording). Feedback and status
+  /// are those of the first.
+  std::vector<std::filesystem::path> others;
   std::filesystem::path output;  ///< Must not exist.
   ImageStorage storage = ImageStorage::kViewable;
   /// T_world_depth, in order of time. Empty: viewable recordings get those that the recording
@@ -38,6 +42,8 @@ struct ConvertSummary {
   std::uint64_t poses = 0;        ///< Poses of the rig, written as transforms.
   std::string poses_from;         ///< Where they come from, in words.
   std::uint64_t left_out = 0;     ///< Damaged messages.
+  std::vector<MergedPart> parts;  ///< Where the frames come from, if there are others.
+  std::uint64_t missing = 0;      ///< Frames that none of these has.
   bool has_thermal_pose = false;  ///< T_thermal_depth is there as a transform.
 };
 

@@ -75,6 +75,7 @@ void AddCommands(CLI::App& app, CommandBody& body) {
   AddImportCommand(app, body);
   AddInspectCommand(app, body);
   AddConvertCommand(app, body);
+  AddMergeRecordingsCommand(app, body);
   AddReconstructCommand(app, body);
   AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);

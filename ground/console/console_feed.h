@@ -54,7 +54,7 @@ class ConsoleFeed {
   ConsoleInbox& inbox_;
   ModelCopier copier_;
   std::uint64_t scan_ = 0;
-  CaptureTime newest_{};  ///< Of the depth frames.
+  CaptureTime newest_{};  ///< The newest depth frame's.
   ConsoleCost cost_;
 };
 

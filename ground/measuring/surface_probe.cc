@@ -51,8 +51,8 @@ class BlockWalk {
   }
   bool is_over() const { return at_m_ > reach_m_; }
   const GridIndex& block() const { return block_; }
-  /// Which neighbours' surface the ray may meet as well, because it runs along the border to them
-  /// as exactly as points are stored: a step of -1 or 1 for each such axis.
+  /// Names the neighbours whose surface the ray may meet as well, because it runs along the border
+  /// to them as exactly as points are stored: a step of -1 or 1 for each such axis.
   GridIndex Beside() const {
     constexpr double kStored_m = 1e-6;
     const double leave_m = std::min(next_m_.minCoeff(), reach_m_);

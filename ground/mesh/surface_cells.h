@@ -23,20 +23,20 @@ struct BlockCrossings {
   std::uint32_t first = 0;  ///< Index of points[0] among all points.
 };
 
-/// What eight neighbouring voxels along x are, a byte each, the first lowest: most places are not
-/// cut by the surface, and are passed over eight at a time.
+/// Says what eight neighbouring voxels along x are, a byte each, the first lowest: most places are
+/// not cut by the surface, and are passed over eight at a time.
 using SignRow = std::uint64_t;
 inline constexpr SignRow kInsideBits = 0x0101010101010101;  ///< Distance < 0.
 inline constexpr int kUnobservedBit = 1;                    ///< Weight too small; not inside.
 
-/// What the voxels of a block and the first layer of its upper neighbours are, x fastest.
+/// Says what the voxels of a block and the first layer of its upper neighbours are, x fastest.
 struct BlockSigns {
   static constexpr int kSide = kBlockSide + 1;
 
   static std::size_t Index(const GridIndex& local) {
     return static_cast<std::size_t>(local.x() + kSide * (local.y() + kSide * local.z()));
   }
-  /// The eight that begin at `local`.
+  /// Returns the eight that begin at `local`.
   SignRow Row(const GridIndex& local) const {
     SignRow row = 0;
     std::memcpy(&row, bytes.data() + Index(local), sizeof(row));

@@ -90,6 +90,25 @@ std::string StreamText(const char* name, const StreamCounters& counters, std::ui
   return text + "\n" + RigText(counters);
 }
 
+/// Returns whether frames that did not arrive are in the rig's recording: it is written beside the
+/// link, so that it has also what found no room before the link.
+bool IsAnyOnTheRigOnly(const StreamCounters& counters) {
+  return counters.missing > 0 ||
+         std::ranges::any_of(counters.dropped_by_rig, [](const DropCount& drop) {
+           return drop.reason == "queue full" && drop.frames > 0;
+         });
+}
+
+/// Says where what did not arrive is to be had.
+std::string MissingText(const SessionCounters& counters, const RecordingProgress& recording) {
+  if (!IsAnyOnTheRigOnly(counters.depth) && !IsAnyOnTheRigOnly(counters.thermal)) return {};
+  return fmt::format(
+      "         the rig's own recording has what is missing: isotherm merge-recordings {} RIG.mcap "
+      "-o "
+      "WHOLE.mcap\n",
+      recording.path.empty() ? "RECORDING.mcap" : recording.path.string());
+}
+
 void DescribeClock(const SessionClock& clock, Json& json) {
   json["synchronised"] = clock.rig.synchronised;
   json["unsynchronised_at_some_time"] = clock.unsynchronised;
@@ -150,6 +169,7 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
 std::string CountersText(const SessionCounters& counters, const RecordingProgress& recording) {
   std::string text = StreamText("link", counters.depth, recording.depth_frames) +
                      StreamText("", counters.thermal, recording.thermal_frames);
+  text += MissingText(counters, recording);
   if (!counters.ended) {
     text += "         the rig had not said its last word: what it sent after these is not known\n";
   }

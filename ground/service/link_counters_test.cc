@@ -60,6 +60,20 @@ TEST(LinkCountersTest, F28WhatTheRigDroppedItselfIsInTheSummaryWithItsReasons) {
   EXPECT_THAT(CountersText({}, {}), Not(HasSubstr("the rig dropped")));
 }
 
+TEST(LinkCountersTest, WhereWhatIsMissingIsToBeHadIsSaid) {
+  RecordingProgress recording;
+  recording.path = "out/scan.mcap";
+  const std::string words = "isotherm merge-recordings out/scan.mcap RIG.mcap -o WHOLE.mcap\n";
+  EXPECT_THAT(CountersText(NarrowLink(), recording), HasSubstr(words));
+  SessionCounters outage;
+  outage.thermal = {.published = 240, .received = 200, .missing = 40};
+  EXPECT_THAT(CountersText(outage, recording), HasSubstr(words));
+  SessionCounters whole;
+  whole.thermal = {.published = 240, .received = 240};
+  whole.thermal.dropped_by_rig = {{"rejected", 3}};
+  EXPECT_THAT(CountersText(whole, recording), Not(HasSubstr("merge-recordings")));
+}
+
 TEST(LinkCountersTest, F28StatsHaveItToo) {
   Json link;
   DescribeCounters(NarrowLink(), {}, link);
