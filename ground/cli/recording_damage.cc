@@ -70,6 +70,13 @@ std::string DamageText(const RecordingReport& report) {
   }
   if (report.info.gaps.size() > kMaxListed)
     text += fmt::format("{:<14}and {} places more\n", "", report.info.gaps.size() - kMaxListed);
+  if (!report.info.complete || IsDamaged(report)) {
+    text += fmt::format(
+        "{:<14}isotherm merge-recordings {} -o WHOLE.mcap makes it whole; with another recording "
+        "of "
+        "the same scan (of the rig, of the ground) with its frames\n",
+        "", Printable(report.file));
+  }
   return text;
 }
 

@@ -39,7 +39,7 @@ struct BlockBatch {
   VoxelGrid grid;
   double truncation_distance_m = 0.0;
   std::int32_t max_blocks = 0;  ///< The volume may come to have so many.
-  CaptureTime capture_time{};   ///< That of the depth frame after which they were copied.
+  CaptureTime capture_time{};   ///< The depth frame's after which they were copied.
   int map = 0;                  ///< The sub-map of the blocks.
   int active_map = 0;
   std::vector<CopiedMap> maps;  ///< All sub-maps.

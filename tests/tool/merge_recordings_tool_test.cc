@@ -112,7 +112,9 @@ TEST_F(MergeRecordingsToolTest, ATornRecordingIsMadeWhole) {
   Content torn;
   Read("torn.mcap", torn);
   ASSERT_FALSE(torn.info.complete);
+  EXPECT_THAT(Run("inspect torn.mcap").out, HasSubstr("isotherm merge-recordings torn.mcap -o"));
   RunWell("merge-recordings torn.mcap -o whole.mcap");
+  EXPECT_THAT(Run("inspect whole.mcap").out, Not(HasSubstr("merge-recordings")));
   Content whole;
   Read("whole.mcap", whole);
   EXPECT_TRUE(whole.info.complete);
