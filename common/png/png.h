@@ -35,7 +35,7 @@ struct PngPixels {
   int channels = 3;  ///< 1 grey or 3 colour.
   int bits = 8;      ///< 8, or 16 in the order of this machine.
   std::span<const std::uint8_t> bytes;
-  /// In a third of the time, and larger: for what is looked at once.
+  /// Takes a third of the time and makes the file larger: for what is looked at once.
   bool is_fleeting = false;
 };
 

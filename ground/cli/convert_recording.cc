@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "common/base/log.h"
@@ -39,9 +40,16 @@ struct OtherMessage {
   std::string data;
 };
 
-/// Gives these messages in order of time.
+/// Gives these messages of a recording in order of time.
 class OtherMessages {
  public:
+  static Result<std::unique_ptr<OtherMessages>> Open(const std::filesystem::path& recording) {
+    auto source = OpenFileSource(recording);
+    if (!source) return Err(source.error());
+    auto index = mcap::ReadFileIndex(**source);
+    if (!index) return Err(index.error().WithContext(recording.string()));
+    return std::make_unique<OtherMessages>(std::move(*source), std::move(*index));
+  }
   OtherMessages(std::unique_ptr<ByteSource> source, mcap::FileIndex index)
       : source_(std::move(source)), index_(std::move(index)), stream_(*source_, index_) {}
 
@@ -72,6 +80,35 @@ class OtherMessages {
   mcap::MessageStream stream_;
 };
 
+/// Gives those of several recordings, each once.
+class MergedMessages {
+ public:
+  explicit MergedMessages(std::vector<std::unique_ptr<OtherMessages>> recordings)
+      : recordings_(std::move(recordings)) {
+    for (const auto& recording : recordings_) heads_.push_back(recording->Next());
+  }
+
+  std::optional<OtherMessage> Next() {
+    while (true) {
+      const auto earliest = std::ranges::min_element(
+          heads_, {}, [](const auto& head) { return head ? head->time : CaptureTime::max(); });
+      if (!*earliest) return std::nullopt;
+      const auto recording = static_cast<std::size_t>(earliest - heads_.begin());
+      OtherMessage message = std::exchange(*earliest, recordings_[recording]->Next()).value();
+      if (message.time != seen_time_) seen_.clear();
+      seen_time_ = message.time;
+      if (recordings_.size() == 1 || seen_.emplace(message.topic, message.data).second)
+        return message;
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<OtherMessages>> recordings_;
+  std::vector<std::optional<OtherMessage>> heads_;
+  CaptureTime seen_time_{};
+  std::set<std::pair<std::string, std::string>> seen_;  ///< Topics and content at that time.
+};
+
 /// The tracked pose that a feedback message carries; nullopt while the rig was lost.
 std::optional<StampedPose> PoseOf(const OtherMessage& message) {
   if (message.topic != kFeedbackRecordTopic) return std::nullopt;
@@ -80,7 +117,7 @@ std::optional<StampedPose> PoseOf(const OtherMessage& message) {
 
 class Converter {
  public:
-  Converter(const ConvertRequest& request, RecordingReader& reader, OtherMessages& others,
+  Converter(const ConvertRequest& request, RecordingReader& reader, MergedMessages& others,
             RecordingWriter& writer)
       : request_(request), reader_(reader), others_(others), writer_(writer) {
     for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
@@ -257,7 +294,7 @@ class Converter {
 
   const ConvertRequest& request_;
   RecordingReader& reader_;
-  OtherMessages& others_;
+  MergedMessages& others_;
   RecordingWriter& writer_;
   PosesFrom from_ = PosesFrom::kNowhere;
   DepthEncoder depth_encoder_;
@@ -269,41 +306,49 @@ class Converter {
   ConvertSummary summary_;
 };
 
-Result<std::unique_ptr<RecordingReader>> OpenReader(const ConvertRequest& request) {
-  if (request.others.empty()) return RecordingReader::Open(request.recording);
-  std::vector<std::filesystem::path> paths{request.recording};
-  paths.insert(paths.end(), request.others.begin(), request.others.end());
-  auto merged = MergedRecording::OpenAll(paths);
-  if (!merged) return Err(merged.error());
-  return std::unique_ptr<RecordingReader>(std::move(*merged));
+Result<MergedMessages> OpenOthers(const std::vector<std::filesystem::path>& paths) {
+  std::vector<std::unique_ptr<OtherMessages>> recordings;
+  for (const std::filesystem::path& path : paths) {
+    auto messages = OtherMessages::Open(path);
+    if (!messages) return Err(messages.error());
+    recordings.push_back(std::move(*messages));
+  }
+  return MergedMessages(std::move(recordings));
 }
 
-}  // namespace
-
-Result<ConvertSummary> ConvertRecording(const ConvertRequest& request) {
-  auto reader = OpenReader(request);
-  if (!reader) return Err(reader.error());
-  // A second reader of the same file: the first one hides what it does not know.
-  auto source = OpenFileSource(request.recording);
-  if (!source) return Err(source.error());
-  auto index = mcap::ReadFileIndex(**source);
-  if (!index) return Err(index.error().WithContext(request.recording.string()));
-  OtherMessages others(std::move(*source), std::move(*index));
+/// Converts what `reader` gives; the files at `paths` are read once more for what it hides.
+Result<ConvertSummary> Convert(const ConvertRequest& request, RecordingReader& reader,
+                               const std::vector<std::filesystem::path>& paths) {
+  auto others = OpenOthers(paths);
+  if (!others) return Err(others.error());
   RecordingOptions options;
   options.image_storage = request.storage;
   options.sync = false;  // Converting again costs nothing.
   auto writer = RecordingWriter::Create(request.output, options);
   if (!writer) return Err(writer.error());
-  Converter converter(request, **reader, others, **writer);
+  Converter converter(request, reader, *others, **writer);
   if (Status status = converter.Run(); !status.ok()) return Err(std::move(status));
-  const auto* merged = dynamic_cast<const MergedRecording*>(reader->get());
-  if (merged != nullptr && !merged->conflict().ok()) return Err(merged->conflict());
   if (Status status = (*writer)->Close(); !status.ok()) return Err(std::move(status));
-  ConvertSummary summary = converter.summary();
-  if (merged != nullptr) {
-    summary.parts = merged->parts();
-    summary.missing = merged->missing();
+  return converter.summary();
+}
+
+}  // namespace
+
+Result<ConvertSummary> ConvertRecording(const ConvertRequest& request) {
+  std::vector<std::filesystem::path> paths{request.recording};
+  if (request.others.empty()) {
+    auto reader = RecordingReader::Open(request.recording);
+    if (!reader) return Err(reader.error());
+    return Convert(request, **reader, paths);
   }
+  paths.insert(paths.end(), request.others.begin(), request.others.end());
+  auto merged = MergedRecording::OpenAll(paths);
+  if (!merged) return Err(merged.error());
+  Result<ConvertSummary> summary = Convert(request, **merged, paths);
+  if (!(*merged)->conflict().ok()) return Err((*merged)->conflict());
+  if (!summary) return summary;
+  summary->parts = (*merged)->parts();
+  summary->missing = (*merged)->missing();
   return summary;
 }
 

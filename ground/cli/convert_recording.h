@@ -22,8 +22,7 @@ inline constexpr std::string_view kSpoiledMetadata = "spoiled";
 /// Says which recording becomes which.
 struct ConvertRequest {
   std::filesystem::path recording;
-  /// Further recordings of the same scan, which fill holes (MergedRecording). Feedback and status
-  /// are those of the first.
+  /// Further recordings of the same scan, which fill holes (MergedRecording).
   std::vector<std::filesystem::path> others;
   std::filesystem::path output;  ///< Must not exist.
   ImageStorage storage = ImageStorage::kViewable;

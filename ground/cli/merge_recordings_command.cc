@@ -13,10 +13,10 @@ namespace {
 
 constexpr const char* kMergeFooter =
     R"(Rig and ground both record a scan. After an outage of the link the ground's recording has a hole; the rig's has
-everything but the ground's feedback. Merged, they are one recording that has each frame once, from the first of
-them that has it whole. Feedback and status are those of the first. Parts of a long recording become one, too.
+everything but the ground's feedback. Merged, they are one recording that has each frame and message once, frames
+from the first of them that has it whole. Parts of a long recording become one, too.
 
-Recordings of different scans are refused: their frames of the same number were taken at different times.
+Recordings of different scans are refused.
 
 A single recording that is torn or damaged is made whole: everything that can be read, with an index and an end.
 

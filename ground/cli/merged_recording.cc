@@ -60,11 +60,25 @@ Status CheckSameCameras(const Rig& a, const Rig& b, const std::string& paths) {
   return CheckSameCamera("thermal", a.thermal, b.thermal, paths);
 }
 
+int KnownParts(const Rig& rig) {
+  return (rig.depth ? 1 : 0) + (rig.thermal ? 1 : 0) + (rig.T_thermal_depth ? 1 : 0);
+}
+
 /// A recording with its next item.
 struct Part {
   std::unique_ptr<RecordingReader> reader;
   std::optional<RecordedItem> head;
+  std::optional<CaptureTime> place;  ///< The head's, among the items of all recordings.
 };
+
+/// Returns the place of an item after one at `before` in the same recording. Recordings are in the
+/// order of their frames; what others say of their time need not be right, and must not hold up or
+/// hurry on what follows.
+CaptureTime PlaceOf(const RecordedItem& item, const std::optional<CaptureTime>& before) {
+  const CaptureTime time = TimeOf(item);
+  if (HeaderOf(item) != nullptr || !before) return time;
+  return std::clamp(time, *before, *before + std::chrono::seconds(1));
+}
 
 class MergedReader final : public MergedRecording {
  public:
@@ -89,11 +103,14 @@ class MergedReader final : public MergedRecording {
     return missing;
   }
 
+  /// The first that knows the most: a camera may have come after a recording had ended.
   Result<Rig> ReadRig() override {
-    Result<Rig> rig = recordings_.front().reader->ReadRig();
-    for (std::size_t i = 1; i < recordings_.size() && !rig; ++i)
-      rig = recordings_[i].reader->ReadRig();
-    return rig;
+    Result<Rig> best = recordings_.front().reader->ReadRig();
+    for (std::size_t i = 1; i < recordings_.size(); ++i) {
+      Result<Rig> rig = recordings_[i].reader->ReadRig();
+      if (rig && (!best || KnownParts(*rig) > KnownParts(*best))) best = std::move(rig);
+    }
+    return best;
   }
 
   Result<std::optional<RecordedItem>> Next() override {
@@ -131,6 +148,7 @@ class MergedReader final : public MergedRecording {
       Result<std::optional<RecordedItem>> item = part.reader->Next();
       if (item) {
         part.head = std::move(*item);
+        if (part.head) part.place = PlaceOf(*part.head, part.place);
         return;
       }
       NoteDamaged(recording, item.error().message());
@@ -150,14 +168,22 @@ class MergedReader final : public MergedRecording {
     std::optional<std::size_t> earliest;
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       const std::optional<RecordedItem>& head = recordings_[i].head;
-      if (head && (!earliest || TimeOf(*head) < TimeOf(*recordings_[*earliest].head))) earliest = i;
+      if (head && (!earliest || recordings_[i].place < recordings_[*earliest].place)) earliest = i;
     }
     return earliest;
   }
 
-  bool IsNew(const RecordedItem& item, std::size_t recording) {
+  bool IsNew(RecordedItem& item, std::size_t recording) {
+    if (auto* step = std::get_if<ClockStep>(&item)) return IsNewStep(*step);
     const FrameHeader* header = HeaderOf(item);
     if (header == nullptr) return IsNewEvent(item);
+    if (session_.value_or(header->session) != header->session) {
+      conflict_ = DataLoss(
+          fmt::format("not of one scan: {} has frames of session {}, the others of session {}",
+                      parts_[recording].path.string(), header->session, *session_));
+      return false;
+    }
+    session_ = header->session;
     auto& frames = frames_[item.index()];
     const auto seen = frames.find(header->frame_number);
     if (seen == frames.end()) {
@@ -175,6 +201,15 @@ class MergedReader final : public MergedRecording {
           parts_[recording].path.string()));
     }
     return false;
+  }
+
+  /// Rig and ground note a step of the clock at different times, and each file begins to count
+  /// anew: what tells is where the clock is then.
+  bool IsNewStep(ClockStep& step) {
+    if (wall_minus_time_ == step.wall_minus_time) return false;
+    step.step = step.wall_minus_time - wall_minus_time_.value_or(Nanoseconds(0));
+    wall_minus_time_ = step.wall_minus_time;
+    return true;
   }
 
   /// The same event has the same time in each recording, so that those of one time are enough.
@@ -196,6 +231,8 @@ class MergedReader final : public MergedRecording {
   Status conflict_;
   /// Capture times by frame number, for each kind of frame: 16 bytes a frame and what a map needs.
   std::map<std::size_t, std::map<std::uint64_t, CaptureTime>> frames_;
+  std::optional<std::uint64_t> session_;
+  std::optional<Nanoseconds> wall_minus_time_;  ///< After the last step of the clock.
   CaptureTime events_time_{};
   std::set<std::string> events_;  ///< Seen at that time.
 };
@@ -236,7 +273,7 @@ Result<std::unique_ptr<MergedRecording>> MergedRecording::OpenAll(
         rig = std::move(*own);
       }
     }
-    recordings.push_back({std::move(*reader), std::nullopt});
+    recordings.push_back({std::move(*reader), std::nullopt, std::nullopt});
     parts.push_back({.path = path});
   }
   return std::make_unique<MergedReader>(std::move(recordings), std::move(parts));

@@ -32,8 +32,8 @@ class MergedRecording : public RecordingReader {
 
   /// Says what was read so far, in the order of the paths.
   virtual const std::vector<MergedPart>& parts() const = 0;
-  /// Not ok, and Next is at its end, once two recordings have a frame of the same number that was
-  /// taken at different times: they are of different scans.
+  /// Not ok, and Next is at its end, once two recordings have frames of different sessions, or a
+  /// frame of the same number that was taken at different times: they are of different scans.
   virtual const Status& conflict() const = 0;
   /// Frames between the first and the last one read so far that no recording has, of both cameras.
   virtual std::uint64_t missing() const = 0;

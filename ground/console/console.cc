@@ -109,6 +109,8 @@ Console::Console(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Console::~Console() {
   parts_->present_thread.reset();
   parts_->io_thread.reset();
+  // Questions that nobody answers hold connections of the server, which goes before the inbox.
+  parts_->inbox.TakeEvents();
 }
 
 Result<std::unique_ptr<Console>> Console::Start(const GroundOptions& options, const Clock& clock,

@@ -45,7 +45,8 @@ void ConsoleFeed::AfterDepth(const FrameHeader& header, const DepthReport& repor
                 .tracking = StateOfFrame(report)});
   const int viewers = inbox_.viewers;
   cost_.max_viewers = std::max(cost_.max_viewers, viewers);
-  if (viewers > 0) CopyModel(scan, FromSeconds(1e-3 * options_.console().expert().copy_ms()));
+  if (inbox_.IsWatched(start))
+    CopyModel(scan, FromSeconds(1e-3 * options_.console().expert().copy_ms()));
   constexpr double kMillisecondsPerSecond = 1e3;
   cost_.copying.Add(kMillisecondsPerSecond * ToSeconds(clock_.SteadyNow() - start));
 }

@@ -41,7 +41,7 @@ class ConsoleFeed {
   void Add(const Feedback& feedback) { inbox_.Add(feedback); }
 
   /// Returns whether WhileIdle has something to do.
-  bool has_more() const { return inbox_.is_behind && inbox_.viewers > 0; }
+  bool has_more() const { return inbox_.is_behind && inbox_.IsWatched(clock_.SteadyNow()); }
   std::uint64_t scan() const { return scan_; }
   /// Returns the cost of this scan so far.
   const ConsoleCost& cost() const { return cost_; }

@@ -15,6 +15,7 @@
 #include "common/frame/frame.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/messages/messages.h"
+#include "common/time/time_types.h"
 #include "ground/console/live.pb.h"
 #include "ground/measuring/shape_measurer.h"
 #include "ground/snapshot/block_batch.h"
@@ -80,15 +81,24 @@ class ConsoleInbox {
 
   /// How many clients look. Nothing is copied for nobody.
   std::atomic<int> viewers{0};
+  /// A program that asks for a place looks on for a while, too. Returns whether anybody did before.
+  bool LookOn(SteadyTime now) {
+    const bool was_watched = IsWatched(now);
+    watched_until_ = now + kLooksOn;
+    return was_watched;
+  }
+  bool IsWatched(SteadyTime now) const { return viewers > 0 || now < watched_until_.load(); }
   /// How many of them want images with all their values.
   std::atomic<int> raw_viewers{0};
   /// Something of the model was not copied yet.
   std::atomic<bool> is_behind{false};
 
  private:
+  static constexpr Nanoseconds kLooksOn = std::chrono::seconds(10);
   static constexpr std::size_t kBatches = 2;
   static constexpr std::size_t kMaxEvents = 4096;
 
+  std::atomic<SteadyTime> watched_until_{SteadyTime::min()};
   mutable Mutex mutex_;
   std::condition_variable_any changed_;
   std::size_t made_ GUARDED_BY(mutex_) = 0;

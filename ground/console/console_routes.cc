@@ -43,7 +43,10 @@ void ConsoleRoutes::Answer(const WebRequest& request, const Reply& reply) {
   } else if (is_api && !access_.RoleOf(request)) {
     answer = TextReply(401, "log in first: POST the code to /api/login\n");
   } else if (request.path == kQueryPath) {
-    return AskForPlace(request, session_.inbox, [reply](WebReply record) {
+    const QueryContext context{.inbox = session_.inbox,
+                               .now = session_.clock.SteadyNow(),
+                               .is_growing = KeptScan().phase() == live::Scan::RUNNING};
+    return AskForPlace(request, context, [reply](WebReply record) {
       AddSafetyHeaders(record);
       reply(std::move(record));
     });

@@ -6,7 +6,7 @@
 namespace isotherm {
 namespace {
 
-/// Blocks without surface are soon looked at, and the first surface in them is awaited.
+/// Blocks without surface are looked at again after this time, which doubles with each look.
 constexpr Nanoseconds kWhileEmpty = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -33,16 +33,28 @@ void GroupSchedule::NoteBlock(int map, const GridIndex& block,
   }
 }
 
+void GroupSchedule::SetShown(const GroupKey& key, bool is_shown) {
+  Group& group = groups_[key];
+  if (is_shown) group.looks = 0;
+  group.is_shown = is_shown;
+}
+
+Nanoseconds GroupSchedule::IntervalOf(const Group& group) const {
+  if (group.is_shown) return interval_;
+  constexpr int kMaxDoublings = 5;
+  return std::min(interval_, kWhileEmpty * (1 << std::clamp(group.looks - 1, 0, kMaxDoublings)));
+}
+
 std::optional<DueGroup> GroupSchedule::Take(SteadyTime now, int active_map,
-                                            const Eigen::Vector3d& rig_group) {
+                                            const Eigen::Vector3d& rig_group, bool may_refresh) {
   // What is in another sub-map is as far as can be.
   constexpr double kElsewhere = 1e6;
   auto best = waiting_.end();
   double best_score = -std::numeric_limits<double>::infinity();
   for (auto entry = waiting_.begin(); entry != waiting_.end(); ++entry) {
     const Group& group = **entry;
-    const Nanoseconds interval = group.is_shown ? interval_ : std::min(interval_, kWhileEmpty);
-    if (group.made && now - *group.made < interval) continue;
+    if (group.is_shown && !may_refresh) continue;
+    if (group.made && now - *group.made < IntervalOf(group)) continue;
     const GroupKey& key = group.key;
     const double distance =
         key.map == active_map
@@ -62,6 +74,7 @@ std::optional<DueGroup> GroupSchedule::Take(SteadyTime now, int active_map,
   waiting_.pop_back();
   group.is_waiting = false;
   group.made = now;
+  if (!group.is_shown) ++group.looks;
   return DueGroup{.key = group.key, .changed = group.changed, .is_new = !group.is_shown};
 }
 

@@ -33,9 +33,11 @@ class GroupSchedule {
   void NoteBlock(int map, const GridIndex& block, const Eigen::Vector3i& blocks_of_grid,
                  CaptureTime time);
   /// Says whether a group shows a surface, once it is made.
-  void SetShown(const GroupKey& key, bool is_shown) { groups_[key].is_shown = is_shown; }
+  void SetShown(const GroupKey& key, bool is_shown);
   /// Returns the next group to make, which then counts as made; nullopt if none is due.
-  std::optional<DueGroup> Take(SteadyTime now, int active_map, const Eigen::Vector3d& rig_group);
+  /// `may_refresh`: groups that show surface count, too.
+  std::optional<DueGroup> Take(SteadyTime now, int active_map, const Eigen::Vector3d& rig_group,
+                               bool may_refresh = true);
   std::size_t waiting() const { return waiting_.size(); }
 
  private:
@@ -43,9 +45,11 @@ class GroupSchedule {
     GroupKey key;
     bool is_waiting = false;
     bool is_shown = false;
+    int looks = 0;  ///< Taken while it showed nothing.
     CaptureTime changed{};
     std::optional<SteadyTime> made;
   };
+  Nanoseconds IntervalOf(const Group& group) const;
   void Note(const GroupKey& key, CaptureTime time);
 
   const Nanoseconds interval_;

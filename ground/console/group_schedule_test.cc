@@ -80,6 +80,28 @@ TEST_F(GroupScheduleTest, TheFirstSurfaceOfAPlaceComesBeforeAll) {
   EXPECT_FALSE(schedule_.Take(start_ + 6s, 0, Eigen::Vector3d::Zero())->is_new);
 }
 
+TEST_F(GroupScheduleTest, WhenNothingIsToBeRefreshedNewSurfaceStillComes) {
+  NoteGroup(0);
+  EXPECT_EQ(TakeX(start_), 0);
+  for (const int x : {0, 9}) NoteGroup(x);
+  const auto take = [&] {
+    return schedule_.Take(start_ + 5s, 0, Eigen::Vector3d::Zero(), /*may_refresh=*/false);
+  };
+  EXPECT_EQ(take()->key.x, 9);
+  EXPECT_FALSE(take());
+  EXPECT_EQ(TakeX(start_ + 5s), 0);
+}
+
+TEST_F(GroupScheduleTest, WhatStaysEmptyIsLookedAtLessAndLess) {
+  int looks = 0;
+  for (int i = 0; i < 100; ++i) {
+    NoteGroup(1);
+    if (schedule_.Take(start_ + i * 100ms, 0, Eigen::Vector3d::Zero())) ++looks;
+  }
+  // After 0.1, 0.2, 0.4, 0.8 and then each second.
+  EXPECT_EQ(looks, 13);
+}
+
 TEST_F(GroupScheduleTest, FarGroupsGetTheirTurn) {
   for (const int x : {0, 9}) NoteGroup(x);
   TakeX(start_);

@@ -20,7 +20,8 @@ class PlaceQueryTest : public ::testing::Test {
     request.method = method;
     request.path = kQueryPath;
     request.body = body;
-    AskForPlace(request, inbox_, [this](WebReply reply) { reply_ = std::move(reply); });
+    AskForPlace(request, {inbox_, now_, is_growing_},
+                [this](WebReply reply) { reply_ = std::move(reply); });
   }
   /// Expects that it was refused at once, and that nobody else hears of it.
   void ExpectRefused(int status, const std::string& why) {
@@ -31,6 +32,8 @@ class PlaceQueryTest : public ::testing::Test {
   }
 
   ConsoleInbox inbox_;
+  SteadyTime now_{std::chrono::hours(1)};
+  bool is_growing_ = false;
   std::optional<WebReply> reply_;
 };
 
@@ -57,6 +60,28 @@ TEST_F(PlaceQueryTest, TheConsoleAnswersWithARecord) {
   EXPECT_EQ(record["hit"], true);
   EXPECT_EQ(record["apparent_celsius"], 81.25);
   EXPECT_FALSE(record.contains("sigma_k")) << "it was never measured";
+}
+
+TEST_F(PlaceQueryTest, AScanThatGoesOnIsCopiedForWhoAsks) {
+  constexpr const char* kQuestion = R"({"ray": {"origin": {}, "direction": {"z": 1}}})";
+  is_growing_ = true;
+  Ask(kQuestion);
+  ExpectRefused(503, "ask again");
+  reply_.reset();
+  now_ += std::chrono::seconds(9);
+  EXPECT_TRUE(inbox_.IsWatched(now_));
+  Ask(kQuestion);
+  EXPECT_FALSE(reply_) << "the console is asked";
+  EXPECT_EQ(inbox_.TakeEvents().size(), 1U);
+  now_ += std::chrono::seconds(11);
+  EXPECT_FALSE(inbox_.IsWatched(now_)) << "nothing is copied for nobody";
+  Ask(kQuestion);
+  ExpectRefused(503, "ask again");
+  reply_.reset();
+  inbox_.viewers = 1;
+  now_ += std::chrono::seconds(60);
+  Ask(kQuestion);
+  EXPECT_FALSE(reply_);
 }
 
 TEST_F(PlaceQueryTest, WhatIsNoQuestionIsRefusedInWords) {

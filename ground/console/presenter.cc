@@ -17,6 +17,8 @@ constexpr Nanoseconds kStateInterval = 500ms;
 constexpr Nanoseconds kPathInterval = 1s;
 /// A rig that has not answered an order by then is not there.
 constexpr Nanoseconds kOrderPatience = 5s;
+/// While groups wait for their turn.
+constexpr Nanoseconds kMaxPause = 20ms;
 /// With nothing to do.
 constexpr Nanoseconds kMaxWait = 250ms;
 /// Columns of the cameras' images.
@@ -293,7 +295,6 @@ std::vector<std::int32_t> Presenter::BlocksOf(const GroupKey& key) const {
 
 Nanoseconds Presenter::MakeGroup() {
   const SteadyTime now = clock_.SteadyNow();
-  if (now < next_group_) return next_group_ - now;
   if (model_.size() == 0 || inbox_.viewers == 0) return kMaxWait;
   const int active = model_.active_map();
   Eigen::Vector3d rig_group = Eigen::Vector3d::Zero();
@@ -302,8 +303,11 @@ Nanoseconds Presenter::MakeGroup() {
     rig_group =
         (pose_.T_map_depth.translation() - grid.min_m) / (kGroupBlocks * grid.block_size_m());
   }
-  const std::optional<DueGroup> due = schedule_.Take(now, active, rig_group);
-  if (!due) return schedule_.waiting() > 0 ? Nanoseconds(20ms) : kMaxWait;
+  const std::optional<DueGroup> due = schedule_.Take(now, active, rig_group, now >= next_group_);
+  if (!due) {
+    if (schedule_.waiting() == 0) return kMaxWait;
+    return now < next_group_ ? std::min(next_group_ - now, kMaxPause) : kMaxPause;
+  }
   const Nanoseconds worked_before = ThreadProcessorTime();
   MakeGroup(*due);
   // The first surface of a place is awaited; better ones may take their time.
@@ -311,7 +315,7 @@ Nanoseconds Presenter::MakeGroup() {
   const Nanoseconds worked = ThreadProcessorTime() - worked_before;
   const double cores = options_.console().expert().mesh_cores();
   next_group_ = now + FromSeconds(ToSeconds(worked) / std::clamp(cores, 0.01, 1.0));
-  return next_group_ - clock_.SteadyNow();
+  return Nanoseconds(0);
 }
 
 void Presenter::MakeGroup(const DueGroup& due) {

@@ -130,6 +130,18 @@ TEST_F(PresenterTest, AllGroupsOfTheSurfaceAreMadeWhileSomebodyLooks) {
   EXPECT_EQ(Newest(LiveKind::kMaps).maps().maps_size(), 1);
 }
 
+TEST_F(PresenterTest, TheFirstSurfaceOfAPlaceDoesNotWaitForItsShareOfTheProcessor) {
+  options_.mutable_console()->mutable_expert()->set_mesh_cores(0.01);
+  Presenter presenter = MakePresenter();
+  inbox_.viewers = 1;
+  BeginScan();
+  presenter.Turn();
+  SendBlocks();
+  constexpr std::size_t kGroups = 8;
+  Turn(presenter, kGroups + 1);
+  EXPECT_EQ(GroupMessages(), kGroups);
+}
+
 TEST_F(PresenterTest, NothingIsMadeForNobody) {
   Presenter presenter = MakePresenter();
   BeginScan();

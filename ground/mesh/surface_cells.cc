@@ -13,7 +13,7 @@ namespace {
 // area. At 2 mm voxels it moves a point by at most 10 um.
 constexpr float kEndMargin = 0.005F;
 
-// Of a sample. The last is of no use beyond its row.
+// A byte of BlockSigns; kOutside only tells Gather what it has seen.
 constexpr std::uint8_t kInside = 1, kUnobserved = 1 << kUnobservedBit, kOutside = 4;
 
 bool IsAskedFor(VoxelLayers layers, const GridIndex& local) {

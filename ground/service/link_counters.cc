@@ -103,9 +103,8 @@ bool IsAnyOnTheRigOnly(const StreamCounters& counters) {
 std::string MissingText(const SessionCounters& counters, const RecordingProgress& recording) {
   if (!IsAnyOnTheRigOnly(counters.depth) && !IsAnyOnTheRigOnly(counters.thermal)) return {};
   return fmt::format(
-      "         the rig's own recording has what is missing: isotherm merge-recordings {} RIG.mcap "
-      "-o "
-      "WHOLE.mcap\n",
+      "         what is missing is in the rig's recording, if it kept one: isotherm "
+      "merge-recordings {} RIG.mcap -o WHOLE.mcap\n",
       recording.path.empty() ? "RECORDING.mcap" : recording.path.string());
 }
 

@@ -41,6 +41,16 @@ test("the surface appears while the scan runs", async () => {
   assert.ok((await surface(page)).triangles > 10000);
 });
 
+test("an order shows the rig's answer", async () => {
+  await page.getByRole("tab", { name: "Control" }).click();
+  await page.getByRole("button", { name: "Hold 30 s" }).click();
+  await page.locator(".answers li").first().waitFor();
+  const answer = () => page.locator(".answers li span").first().textContent();
+  await until(async () => /shutter|source has ended/.test(await answer()), "answer of the rig");
+  console.log(`# the rig says: ${await answer()}`);
+  await shoot(page, "desktop-control");
+});
+
 test("who comes late gets the whole model", async () => {
   const late = await openPage(browser, stack.url, sizes.tablet);
   const first_ms = await late.evaluate(async () => {
@@ -62,14 +72,6 @@ test("a connection that breaks comes back and resumes", async () => {
     await until(async () => page.locator(".offline").isHidden(), "the connection");
   }
   assert.ok((await surface(page)).groups >= before.groups);
-});
-
-test("an order shows the rig's answer", async () => {
-  await page.getByRole("tab", { name: "Control" }).click();
-  await page.getByRole("button", { name: "Hold 30 s" }).click();
-  await page.locator(".answers li").first().waitFor();
-  console.log(`# the rig says: ${await page.locator(".answers li span").first().textContent()}`);
-  await shoot(page, "desktop-control");
 });
 
 test("images of both cameras are shown", async () => {

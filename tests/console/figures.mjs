@@ -112,13 +112,13 @@ if (wanted.includes("reader")) await scan("one viewer that does not draw", 1, as
   return figures;
 }, { pages: 0 });
 if (wanted.includes("three")) await scan("three viewers", 3);
-if (wanted.includes("slow")) await scan("a fast viewer beside one with 200 ms and 2 Mbit/s", 1, async (stack, page, browser) => {
+if (wanted.includes("slow")) await scan("a fast viewer beside one with 200 ms and 2 Mbit/s", 1, async (stack) => {
   const proxy = await slowProxy(stack.port, { bitsPerSecond: 2e6, delay_ms: 100 });
-  const slow = await openPage(browser, `http://127.0.0.1:${proxy.port}`, { width: 1024, height: 768 });
+  const slow = reader(proxy.port);
   await stack.edge.ended;
-  const latencies = await slow.evaluate(() => isotherm.view.surface.latencies_ms);
-  return { slow_new_surface_ms: spread(latencies) };
-});
+  slow.close();
+  return { slow_new_surface_ms: spread(slow.latencies_ms), slow_mbytes: (slow.bytes / 1e6).toFixed(1) };
+}, { pages: 0 });
 if (wanted.includes("ten")) await scan("ten viewers", 10);
 if (wanted.includes("reconnect")) await scan("fifty reconnects", 1, async (stack) => {
   // Before that, the model grows, too.

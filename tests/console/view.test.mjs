@@ -1,5 +1,6 @@
 // `isotherm view`: the page for a finished scan, and for a recording that is played back.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { Stack, openBrowser, openPage, readJson, recording, sleep, surface, tool, until } from "./stack.mjs";
@@ -30,11 +31,9 @@ test("a finished scan is shown with all of its surface", async () => {
   await sleep(3000);
   assert.equal((await json(finished, "/api/scan")).phase, "FINISHED");
   // Its mesh has the triangles of the result, but for those that the borders of groups cut.
-  const { mesh } = readJson(join(scan, "stats.json"));
-  if (mesh?.triangles) assert.ok(Math.abs((await surface(page)).triangles / mesh.triangles - 1) < 0.05);
+  const triangles = Number(/element face (\d+)/.exec(readFileSync(join(scan, "mesh.ply")).subarray(0, 4096).toString("latin1"))[1]);
+  assert.ok(Math.abs((await surface(page)).triangles / triangles - 1) < 0.05, `${(await surface(page)).triangles} of ${triangles} triangles`);
   await shoot(page, "view-finished");
-  await page.getByRole("tab", { name: "Control" }).click();
-  await page.getByRole("button", { name: "Correct now" }).click().catch(() => undefined);
   assert.deepEqual(page.faults, []);
   await page.context().close();
 });

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "tests/tool/recording_tool_run.h"
 
@@ -41,6 +43,11 @@ class MergeRecordingsToolTest : public RecordingToolRun {
       if (auto* thermal = std::get_if<RecordedThermal>(&**item)) write(*thermal);
     }
     ASSERT_TRUE((*writer)->Close().ok());
+  }
+  CaptureTime TimeOfFirstFrame() const {
+    Content scan;
+    Read("scan.mcap", scan);
+    return CaptureTimeFromNanoseconds(scan.frames.at(0).second);
   }
   static bool IsInHole(const FrameHeader& header) {
     return header.frame_number >= kHoleBegin && header.frame_number < kHoleEnd;
@@ -103,6 +110,49 @@ TEST_F(MergeRecordingsToolTest, RecordingsOfDifferentScansAreRefused) {
   EXPECT_FALSE(fs::exists(folder_ / "whole.mcap"));
   EXPECT_EQ(Run("merge-recordings scan.mcap nowhere.mcap -o whole.mcap").status, kNoInput);
   EXPECT_EQ(Run("merge-recordings -o whole.mcap").status, kUsage);
+}
+
+TEST_F(MergeRecordingsToolTest, EventsOfBothAreInItOnce) {
+  Simulate();
+  const CaptureTime begin = TimeOfFirstFrame();
+  using std::chrono::milliseconds;
+  const auto write = [&](const std::string& name, milliseconds noted, const std::string& text) {
+    auto writer = RecordingWriter::Create(folder_ / name, {});
+    ASSERT_TRUE(writer) << writer.error().message();
+    ASSERT_TRUE((*writer)->WriteLog(begin, "info", "of both").ok());
+    ASSERT_TRUE((*writer)->WriteLog(begin, "info", text).ok());
+    // Each notes the same step of the clock when it hears of it.
+    ASSERT_TRUE(
+        (*writer)->Write(ClockStep{begin + noted, milliseconds(250), milliseconds(250)}).ok());
+    ASSERT_TRUE((*writer)->Close().ok());
+  };
+  write("rig.mcap", milliseconds(20), "of the rig");
+  write("ground.mcap", milliseconds(50), "of the ground");
+  RunWell("merge-recordings scan.mcap rig.mcap ground.mcap -o whole.mcap");
+  ExpectFramesOfTheScan("whole.mcap");
+  auto reader = RecordingReader::Open(folder_ / "whole.mcap");
+  std::vector<std::string> texts;
+  std::vector<ClockStep> steps;
+  while (auto item = (*reader)->Next().value()) {
+    if (const auto* log = std::get_if<RecordedLog>(&*item)) texts.push_back(log->text);
+    if (const auto* step = std::get_if<ClockStep>(&*item)) steps.push_back(*step);
+  }
+  EXPECT_THAT(texts, ::testing::UnorderedElementsAre("of both", "of the rig", "of the ground"));
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_EQ(steps[0].step, milliseconds(250));
+  EXPECT_EQ(steps[0].time, begin + milliseconds(20));
+}
+
+TEST_F(MergeRecordingsToolTest, PartsOfAnotherSessionAreRefused) {
+  Simulate();
+  Copy("first.mcap", [](FrameHeader& header, EncodedImage&) { return header.frame_number < 3; });
+  Copy("other.mcap", [](FrameHeader& header, EncodedImage&) {
+    header.session = 99;
+    return header.frame_number >= 3;
+  });
+  const Outcome outcome = Run("merge-recordings first.mcap other.mcap -o whole.mcap");
+  EXPECT_EQ(outcome.status, kData);
+  EXPECT_THAT(outcome.err, HasSubstr("other.mcap has frames of session 99"));
 }
 
 TEST_F(MergeRecordingsToolTest, ATornRecordingIsMadeWhole) {
