@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
-#include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "common/base/log.h"
 #include "common/base/noise.h"
 #include "common/codec/codec.h"
+#include "common/recording/feedback.pb.h"
 #include "common/recording/feedback_record.h"
 #include "common/recording/mcap_message_stream.h"
 #include "common/recording/recording_streams.h"
@@ -80,6 +82,15 @@ class OtherMessages {
   mcap::MessageStream stream_;
 };
 
+/// Tells a message from others of its recording, alike in each recording that has it. What both
+/// sides wrote of feedback is not the same to the byte: the edge adds when it arrived.
+std::string IdentityOf(const OtherMessage& message) {
+  recording::FeedbackRecord feedback;
+  if (message.topic == kFeedbackRecordTopic && feedback.ParseFromString(message.data))
+    return fmt::format("{} {} {}", message.topic, feedback.session(), feedback.frame_number());
+  return message.topic + ' ' + message.data;
+}
+
 /// Gives those of several recordings, each once.
 class MergedMessages {
  public:
@@ -95,18 +106,18 @@ class MergedMessages {
       if (!*earliest) return std::nullopt;
       const auto recording = static_cast<std::size_t>(earliest - heads_.begin());
       OtherMessage message = std::exchange(*earliest, recordings_[recording]->Next()).value();
-      if (message.time != seen_time_) seen_.clear();
-      seen_time_ = message.time;
-      if (recordings_.size() == 1 || seen_.emplace(message.topic, message.data).second)
-        return message;
+      if (recordings_.size() == 1) return message;
+      const std::size_t identity = std::hash<std::string>()(IdentityOf(message));
+      // The other side had it earlier or later; the same recording may say the same again.
+      if (owners_.try_emplace(identity, recording).first->second == recording) return message;
     }
   }
 
  private:
   std::vector<std::unique_ptr<OtherMessages>> recordings_;
   std::vector<std::optional<OtherMessage>> heads_;
-  CaptureTime seen_time_{};
-  std::set<std::pair<std::string, std::string>> seen_;  ///< Topics and content at that time.
+  /// The recording that had a message first, by a hash of its identity.
+  std::unordered_map<std::size_t, std::size_t> owners_;
 };
 
 /// The tracked pose that a feedback message carries; nullopt while the rig was lost.
