@@ -6,7 +6,8 @@
 namespace isotherm {
 namespace {
 
-/// Blocks without surface are looked at again after this time, which doubles with each look.
+/// Blocks without surface are looked at again after this time, which doubles with each look that is
+/// in vain.
 constexpr Nanoseconds kWhileEmpty = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -35,14 +36,16 @@ void GroupSchedule::NoteBlock(int map, const GridIndex& block,
 
 void GroupSchedule::SetShown(const GroupKey& key, bool is_shown) {
   Group& group = groups_[key];
-  if (is_shown) group.looks = 0;
+  group.looks = is_shown ? 0 : group.looks + 1;
   group.is_shown = is_shown;
 }
 
 Nanoseconds GroupSchedule::IntervalOf(const Group& group) const {
   if (group.is_shown) return interval_;
-  constexpr int kMaxDoublings = 5;
-  return std::min(interval_, kWhileEmpty * (1 << std::clamp(group.looks - 1, 0, kMaxDoublings)));
+  // The second look finds what one frame was not enough for.
+  constexpr int kPatientLooks = 2, kMaxDoublings = 5;
+  return std::min(interval_,
+                  kWhileEmpty * (1 << std::clamp(group.looks - kPatientLooks, 0, kMaxDoublings)));
 }
 
 std::optional<DueGroup> GroupSchedule::Take(SteadyTime now, int active_map,
@@ -74,7 +77,6 @@ std::optional<DueGroup> GroupSchedule::Take(SteadyTime now, int active_map,
   waiting_.pop_back();
   group.is_waiting = false;
   group.made = now;
-  if (!group.is_shown) ++group.looks;
   return DueGroup{.key = group.key, .changed = group.changed, .is_new = !group.is_shown};
 }
 

@@ -45,7 +45,7 @@ class GroupSchedule {
     GroupKey key;
     bool is_waiting = false;
     bool is_shown = false;
-    int looks = 0;  ///< Taken while it showed nothing.
+    int looks = 0;  ///< Made in vain, since it showed something.
     CaptureTime changed{};
     std::optional<SteadyTime> made;
   };

@@ -324,8 +324,8 @@ void Presenter::MakeGroup(const DueGroup& due) {
   if (!map.tsdf || (due.is_new && !MayHaveSurface(*map.tsdf, key))) return;
   const Surface surface = mesher_.Extract(*map.tsdf, *map.thermal, BlocksOf(key));
   const bool has_surface = !surface.triangles.empty();
-  if (due.is_new && !has_surface) return;
   schedule_.SetShown(key, has_surface);
+  if (due.is_new && !has_surface) return;
   const VoxelGrid& grid = map.tsdf->grid();
   const std::uint32_t version = ++versions_[key];
   EncodedGroup encoded = EncodeGroup(key, version, grid, surface);

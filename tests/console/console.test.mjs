@@ -32,23 +32,26 @@ test("before a scan the page says that it waits", async () => {
   await until(() => page.evaluate(() => isotherm.state !== undefined), "the state");
 });
 
-test("the surface appears while the scan runs", async () => {
+test("an order shows the rig's answer", async () => {
+  // Before there is much to draw: the recording lasts ten seconds, and then the rig goes.
   stack.startEdge();
+  await until(async () => (await stack.state()).link?.rig_present, "the rig");
+  await page.getByRole("tab", { name: "Control" }).click();
+  await page.getByRole("button", { name: "Hold 30 s" }).click();
+  await page.locator(".answers li").first().waitFor();
+  const answer = () => page.locator(".answers li span").first().textContent();
+  await until(async () => /shutter|source has ended/.test(await answer()), "answer of the rig", 15000)
+    .catch(async () => assert.fail(`the page shows: ${await page.locator(".answers").textContent()}`));
+  console.log(`# the rig says: ${await answer()}`);
+  await shoot(page, "desktop-control");
+});
+
+test("the surface appears while the scan runs", async () => {
   await until(async () => (await surface(page)).groups > 20, "surface");
   await page.waitForFunction(() => document.querySelector(".sentence").textContent.length > 5);
   await sleep(4000);
   await shoot(page, "desktop-scanning");
   assert.ok((await surface(page)).triangles > 10000);
-});
-
-test("an order shows the rig's answer", async () => {
-  await page.getByRole("tab", { name: "Control" }).click();
-  await page.getByRole("button", { name: "Hold 30 s" }).click();
-  await page.locator(".answers li").first().waitFor();
-  const answer = () => page.locator(".answers li span").first().textContent();
-  await until(async () => /shutter|source has ended/.test(await answer()), "answer of the rig");
-  console.log(`# the rig says: ${await answer()}`);
-  await shoot(page, "desktop-control");
 });
 
 test("who comes late gets the whole model", async () => {
