@@ -6,8 +6,8 @@
 namespace isotherm {
 namespace {
 
-/// Blocks without surface are looked at again after this time, which doubles with each look that is
-/// in vain.
+/// Blocks without surface are looked at again after this time, which doubles with each look that
+/// finds none.
 constexpr Nanoseconds kWhileEmpty = std::chrono::milliseconds(100);
 
 }  // namespace

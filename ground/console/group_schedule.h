@@ -45,7 +45,7 @@ class GroupSchedule {
     GroupKey key;
     bool is_waiting = false;
     bool is_shown = false;
-    int looks = 0;  ///< Made in vain, since it showed something.
+    int looks = 0;  ///< Made without a surface, since it showed one.
     CaptureTime changed{};
     std::optional<SteadyTime> made;
   };
