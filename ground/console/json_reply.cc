@@ -8,6 +8,13 @@
 
 namespace isotherm {
 
+WebReply JsonReply(std::string json) {
+  WebReply reply = TextReply(200, std::move(json));
+  reply.content_type = "application/json";
+  reply.headers = {{"Cache-Control", "no-store"}};
+  return reply;
+}
+
 WebReply JsonReply(const google::protobuf::Message& message) {
   google::protobuf::util::JsonPrintOptions options;
   options.always_print_primitive_fields = true;
@@ -15,10 +22,7 @@ WebReply JsonReply(const google::protobuf::Message& message) {
   options.add_whitespace = true;
   std::string json;
   static_cast<void>(google::protobuf::util::MessageToJsonString(message, &json, options));
-  WebReply reply = TextReply(200, std::move(json));
-  reply.content_type = "application/json";
-  reply.headers = {{"Cache-Control", "no-store"}};
-  return reply;
+  return JsonReply(std::move(json));
 }
 
 }  // namespace isotherm

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "ground/console/json_reply.h"
 #include "ground/console/text_reply.h"
 #include "ground/export/result_files.h"
 #include "ground/json/json.h"
@@ -46,10 +47,7 @@ WebReply ResultDownloads::List(const live::Scan& scan) const {
     const std::uintmax_t bytes = fs::file_size(file, error);
     if (!error) list["files"].push_back({{"name", NameOf(file, scan)}, {"bytes", bytes}});
   }
-  WebReply reply = TextReply(200, JsonText(list));
-  reply.content_type = "application/json";
-  reply.headers = {{"Cache-Control", "no-store"}};
-  return reply;
+  return JsonReply(JsonText(list));
 }
 
 WebReply ResultDownloads::Answer(const WebRequest& request, const live::Scan& scan) const {
