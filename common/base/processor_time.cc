@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -39,6 +41,11 @@ constexpr std::size_t kMaxName = 15;
 
 void NameThread(const char* name) {
   pthread_setname_np(pthread_self(), std::string(name).substr(0, kMaxName).c_str());
+}
+
+void LowerThreadPriority(int niceness) {
+  // Of this thread only, which is what Linux does.
+  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness));
 }
 
 std::chrono::nanoseconds ThreadProcessorTime() {

@@ -10,6 +10,10 @@ namespace isotherm {
 /// first 15 characters.
 void NameThread(const char* name);
 
+/// Lets other threads go before the calling one; those that it creates inherit it. It cannot be
+/// taken back.
+void LowerThreadPriority(int niceness);
+
 /// Returns the processor time that the calling thread has used so far, with what other threads
 /// have worked for it (AddProcessorTimeOfHelpers). Differences of two are what lies between.
 std::chrono::nanoseconds ThreadProcessorTime();

@@ -211,7 +211,7 @@ struct EdgeStatus {
   StreamStatus thermal;
   NucReport nuc;
   double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1.
-  std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
+  std::uint64_t spool_frames = 0;  ///< Recorded, and the ground lacks them as far as is known.
   ClockReport clock;
   std::optional<ClockEcho> clock_echo;
   std::uint64_t disk_free_bytes = 0;  ///< Free space on the rig's disk; 0 = not known, 1 = none.
@@ -267,6 +267,16 @@ struct StreamReceipt {
       0;  ///< All numbers below are delivered or given up by the reorder window.
   std::uint64_t received = 0;       ///< Distinct frames.
   std::vector<FrameRange> holes{};  ///< Newest kMaxHoles ranges that are missing, ascending.
+};
+
+/// Frames that are in `range`.
+inline std::uint64_t SizeOf(const FrameRange& range) { return range.last - range.first + 1; }
+
+/// A frame that is sent from the recording because the ground lacks it, beside the frames that are
+/// being captured. Frame is EncodedDepthFrame or EncodedThermalFrame.
+template <typename Frame>
+struct Backfilled {
+  Frame frame;
 };
 
 /// Says what a ground station makes of a session.

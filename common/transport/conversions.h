@@ -37,6 +37,16 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt*
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Hello& from, Hello* to);
 
+/// A frame is the same on the wire whichever way it takes.
+template <typename Frame, typename Wire>
+void ToWire(const Backfilled<Frame>& from, Wire* to) {
+  ToWire(from.frame, to);
+}
+template <typename Frame, typename Wire>
+std::optional<RefusalCause> FromWire(const Wire& from, Backfilled<Frame>* to) {
+  return FromWire(from, &to->frame);
+}
+
 /// Says with which members a sample of this major version ends at least; the hello's type is
 /// frozen and has no mark.
 template <typename Wire>

@@ -21,8 +21,10 @@ namespace {
 const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
   switch (topic) {
     case TopicId::kDepth:
+    case TopicId::kBackfillDepth:
       return &isotherm_wire_DepthFrame_desc;
     case TopicId::kThermal:
+    case TopicId::kBackfillThermal:
       return &isotherm_wire_ThermalFrame_desc;
     case TopicId::kRig:
       return &isotherm_wire_Rig_desc;
@@ -315,6 +317,8 @@ Status Reader<Message>::AttachTo(std::int32_t wait_set) const {
 
 template class Writer<EncodedDepthFrame>;
 template class Writer<EncodedThermalFrame>;
+template class Writer<Backfilled<EncodedDepthFrame>>;
+template class Writer<Backfilled<EncodedThermalFrame>>;
 template class Writer<RigDescription>;
 template class Writer<ExternalOdometrySample>;
 template class Writer<EdgeStatus>;
@@ -326,6 +330,8 @@ template class Writer<Hello>;
 
 template class Reader<EncodedDepthFrame>;
 template class Reader<EncodedThermalFrame>;
+template class Reader<Backfilled<EncodedDepthFrame>>;
+template class Reader<Backfilled<EncodedThermalFrame>>;
 template class Reader<RigDescription>;
 template class Reader<ExternalOdometrySample>;
 template class Reader<EdgeStatus>;

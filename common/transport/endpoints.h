@@ -13,8 +13,8 @@
 #include "common/transport/refusal.h"
 
 /// Typed ends of the topics of the link. Message is one of EncodedDepthFrame, EncodedThermalFrame,
-/// RigDescription, ExternalOdometrySample, EdgeStatus, Command, CommandResult, Receipt, Feedback,
-/// Hello; the topic and its QoS follow from it (qos.cc).
+/// both of them Backfilled, RigDescription, ExternalOdometrySample, EdgeStatus, Command,
+/// CommandResult, Receipt, Feedback, Hello; the topic and its QoS follow from it (qos.cc).
 namespace isotherm {
 
 /// A participant of the domain as this process knows it; 0 = none.

@@ -35,7 +35,7 @@ constexpr dds_duration_t kLease = DDS_SECS(1);
 // The major version is in the names, so that what a peer of another one sends is not even
 // delivered. The hello has none, and its type is frozen: it is how they tell each other.
 static_assert(kWireMajor == 3);
-constexpr std::array<Profile, 10> kProfiles = {{
+constexpr std::array<Profile, 12> kProfiles = {{
     {"isotherm/3/depth", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/3/thermal", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/3/rig", 1, true, kSmallBlocking, kLease},
@@ -47,6 +47,9 @@ constexpr std::array<Profile, 10> kProfiles = {{
     {"isotherm/3/feedback", 1, false, kSmallBlocking, kLease},
     {"isotherm/hello", 1, true, kSmallBlocking, kLease},
     {"isotherm/3/external_odometry", kExternalOdometryHistory, true, kSmallBlocking, kLease},
+    // Not kept: what a ground that comes later lacks, it asks for.
+    {"isotherm/3/backfill_depth", kFrameHistory, false, kFrameBlocking, kLease},
+    {"isotherm/3/backfill_thermal", kFrameHistory, false, kFrameBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }

@@ -30,6 +30,8 @@ enum class TopicId : std::uint8_t {
   kFeedback,
   kHello,
   kExternalOdometry,
+  kBackfillDepth,
+  kBackfillThermal,
 };
 
 /// Relates a message to its topic and to the type that idlc generated for it.
@@ -44,6 +46,16 @@ template <>
 struct TopicOf<EncodedThermalFrame> {
   using Wire = ::isotherm_wire_ThermalFrame;
   static constexpr TopicId kId = TopicId::kThermal;
+};
+template <>
+struct TopicOf<Backfilled<EncodedDepthFrame>> {
+  using Wire = ::isotherm_wire_DepthFrame;
+  static constexpr TopicId kId = TopicId::kBackfillDepth;
+};
+template <>
+struct TopicOf<Backfilled<EncodedThermalFrame>> {
+  using Wire = ::isotherm_wire_ThermalFrame;
+  static constexpr TopicId kId = TopicId::kBackfillThermal;
 };
 template <>
 struct TopicOf<RigDescription> {

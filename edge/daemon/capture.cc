@@ -72,6 +72,11 @@ void PrintSummary(const CaptureParts& parts, const EdgePipeline& pipeline, bool 
       Summary(parts.counters, recording, parts.publisher.receipt(), pipeline.feedback().latency())
           .c_str(),
       stdout);
+  if (const std::uint64_t frames = pipeline.frames_backfilled(); frames > 0) {
+    std::fputs(
+        fmt::format("backfill {} frames reached the ground from the recording\n", frames).c_str(),
+        stdout);
+  }
   std::fputs(
       CameraSummary(parts.health.Get(Sensor::kDepth), parts.health.Get(Sensor::kThermal)).c_str(),
       stdout);

@@ -90,6 +90,7 @@ EdgeStatus EdgeMonitor::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.spool_fill_ratio = pipeline_.spool_fill_ratio();
   status.depth_camera = health_.Get(Sensor::kDepth);
   status.thermal_camera = health_.Get(Sensor::kThermal);
+  status.spool_frames = pipeline_.frames_lacking();
   AddHostStatus(host_.read(), status);
   if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
     status.disk_free_bytes = ToReport(recording->free_bytes);
@@ -216,7 +217,8 @@ bool EdgeMonitor::GetsOn(SteadyTime now) {
     const bool is_due = state == CameraState::kWorking || state == CameraState::kBlind;
     const std::uint64_t captured = counters_.Get(sensor).captured;
     // A camera that is lost is looked for: that is progress. So is a source that has ended.
-    if (std::exchange(newest->captured, captured) != captured || !is_due || pipeline_.finished())
+    if (std::exchange(newest->captured, captured) != captured || !is_due ||
+        pipeline_.source_ended())
       newest->at = now;
     return now - newest->at <= kNoFrames;
   };

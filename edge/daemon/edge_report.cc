@@ -70,6 +70,14 @@ std::string OldText(const EdgeSituation& situation) {
   return is_old ? fmt::format("advice {:.1f} s OLD", ToSeconds(*situation.feedback_age)) : "";
 }
 
+/// "ground lacks 640 frames", which the recording has; nothing while no more than usual are on
+/// their way.
+std::string LackingText(const EdgeStatus& status) {
+  constexpr std::uint64_t kUsual = 100;
+  if (status.spool_frames <= kUsual) return {};
+  return fmt::format("ground lacks {} frames", status.spool_frames);
+}
+
 /// Says how many arrived of those that left the rig; the line above has the others. The ground's
 /// summary calls the difference missing.
 std::string ReceiptText(const StreamReceipt& receipt, std::uint64_t published) {
@@ -174,6 +182,7 @@ std::string StatusLine(const EdgeSituation& situation) {
       situation.depth.recorded + situation.thermal.recorded,
       situation.depth.published + situation.thermal.published,
       Dropped(situation.depth) + Dropped(situation.thermal), ToText(status.clock));
+  if (const std::string lacking = LackingText(status); !lacking.empty()) line += "  " + lacking;
   const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
   if (!stamps.empty()) line += "  stamps " + stamps;
   if (const std::string disk = DiskTimeText(situation.disk_left_s); !disk.empty())
@@ -192,6 +201,8 @@ std::vector<std::string> StatusParts(const EdgeSituation& situation) {
   }
   const std::uint64_t dropped = Dropped(situation.depth) + Dropped(situation.thermal);
   if (dropped > 0) urgent.push_back(fmt::format("dropped {}", dropped));
+  if (std::string lacking = LackingText(status); !lacking.empty())
+    urgent.push_back(std::move(lacking));
   if (std::string old = OldText(situation); !old.empty()) urgent.push_back(std::move(old));
   std::vector<std::string> parts;
   if (situation.ground_present && situation.feedback) {

@@ -12,6 +12,19 @@ std::int64_t SensorCounters::OnTheWayToGround() const {
                                    publish_failed);
 }
 
+void FrameCounters::CountPublishedAfterAll(Sensor sensor) {
+  // First out of its old fate: between the two steps the frame is on the way.
+  for (const FrameFate dropped : {FrameFate::kPublishQueueFull, FrameFate::kPublishFailed}) {
+    std::atomic<std::uint64_t>& count = At(sensor, dropped);
+    std::uint64_t before = count;
+    while (before > 0 && !count.compare_exchange_weak(before, before - 1)) {
+    }
+    if (before == 0) continue;
+    Count(sensor, FrameFate::kPublished);
+    return;
+  }
+}
+
 SensorCounters FrameCounters::Get(Sensor sensor) const {
   const auto& counts = counts_[static_cast<std::size_t>(sensor)];
   const auto count = [&counts](FrameFate fate) {

@@ -49,6 +49,8 @@ class FrameCounters {
   void Count(Sensor sensor, FrameFate fate, std::uint64_t frames = 1) {
     At(sensor, fate).fetch_add(frames);
   }
+  /// A frame that had been dropped before the link was sent from the recording after all.
+  void CountPublishedAfterAll(Sensor sensor);
   /// For counts that somebody else keeps.
   void Set(Sensor sensor, FrameFate fate, std::uint64_t count) { At(sensor, fate) = count; }
   SensorCounters Get(Sensor sensor) const;

@@ -68,7 +68,19 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       spool_queue_(spool_capacity_, PolicyFor(options),
                    CountDropsAs(FrameFate::kRecordQueueFull, counters_)),
       publish_queue_(static_cast<std::size_t>(options.link().expert().queue_frames()),
-                     PolicyFor(options), CountDropsAs(FrameFate::kPublishQueueFull, counters_)) {}
+                     PolicyFor(options), CountDropsAs(FrameFate::kPublishQueueFull, counters_)) {
+  const LinkExpertOptions& link = options.link().expert();
+  if (!spool_ || link.backfill_hz() <= 0.0) return;
+  const BackfillOptions backfill{.frames_per_s = link.backfill_hz(),
+                                 .patience = FromSeconds(link.linger_s()),
+                                 .waits_for_ground = !options.exit_at_end()};
+  // A quarter of the queue: the link has been slower than the cameras for half a second.
+  const std::size_t behind =
+      std::max<std::size_t>(1, static_cast<std::size_t>(link.queue_frames()) / 4);
+  backfill_ = std::make_unique<Backfill>(
+      backfill, BackfillParts{publisher_, spool_->recorded_frames(), counters_, clock_,
+                              [this, behind] { return publish_queue_.size() >= behind; }});
+}
 
 EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
 
@@ -95,6 +107,7 @@ void EdgePipeline::StartCapture() {
   };
   if (spool_) spool_thread_ = start("record", &EdgePipeline::Record);
   publish_thread_ = start("publish", &EdgePipeline::Publish);
+  if (backfill_) backfill_thread_ = start("backfill", &EdgePipeline::RunBackfill);
   codec_thread_ = start("codec", &EdgePipeline::Encode);
   std::promise<void> ended;
   capture_ended_ = ended.get_future();
@@ -125,6 +138,8 @@ Status EdgePipeline::StopRecording() {
   if (std::exchange(recording_stopped_, true)) return recording_status_;
   static_cast<void>(StopCapture(kNoLimit));
   publish_thread_.request_stop();  // It need not wait for the disk.
+  backfill_thread_.request_stop();
+  if (backfill_thread_.joinable()) backfill_thread_.join();
   spool_thread_.request_stop();
   if (spool_thread_.joinable()) spool_thread_.join();
   if (!spool_) return recording_status_;
@@ -160,6 +175,13 @@ Status EdgePipeline::Stop() {
 }
 
 bool EdgePipeline::finished() const {
+  if (!IsEachFrameSettled()) return false;
+  if (!backfill_) return true;
+  backfill_->NoteEnd();
+  return backfill_->is_settled();
+}
+
+bool EdgePipeline::IsEachFrameSettled() const {
   if (!source_ended_) return false;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
     const SensorCounters counters = counters_.Get(sensor);
@@ -206,12 +228,6 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
   nuc_.End();
   ServeNucCommands();
   source_ended_ = true;
-}
-
-void EdgePipeline::ServeNucCommands() {
-  while (nuc_commands_.size() > 0) nuc_.Execute(*nuc_commands_.Pop({}));
-  nuc_.TakeCameraAnswers();
-  for (CommandResult& answer : nuc_.TakeAnswers()) nuc_answers_.Push(std::move(answer), {});
 }
 
 void EdgePipeline::WatchClock() {
@@ -362,39 +378,5 @@ void EdgePipeline::Publish(const std::stop_token& stop) {
                     published.ok() ? FrameFate::kPublished : FrameFate::kPublishFailed);
   }
 }
-
-void EdgePipeline::AnswerCommands() {
-  while (commands_.size() > 0) Execute(*commands_.Pop({}));
-  while (nuc_answers_.size() > 0) Answer(*nuc_answers_.Pop({}));
-  // Nobody serves these any more.
-  while (source_ended_ && nuc_commands_.size() > 0) {
-    Answer({nuc_commands_.Pop({})->number, CommandOutcome::kRefused, "the source has ended"});
-  }
-}
-
-void EdgePipeline::Answer(const CommandResult& result) {
-  const Status answered = publisher_.Answer(result);
-  if (!answered.ok()) {
-    LOG(Edge, Warning) << "command not answered: " << answered.message();
-  }
-}
-
-void EdgePipeline::Execute(const Command& command) {
-  switch (command.kind) {
-    case CommandKind::kSetPublishPolicy:
-      publisher_.SetPolicy(command.publish_policy);
-      return Answer({command.number, CommandOutcome::kDone, ""});
-    case CommandKind::kTriggerNuc:
-    case CommandKind::kSetNucPolicy:
-    case CommandKind::kHoldNuc:
-      static_cast<void>(nuc_commands_.Push(command, {}));
-      return;
-    case CommandKind::kStartScan:
-    case CommandKind::kStopScan:
-      return scan_orders_.push_back(command);
-  }
-}
-
-std::vector<Command> EdgePipeline::TakeScanOrders() { return std::exchange(scan_orders_, {}); }
 
 }  // namespace isotherm

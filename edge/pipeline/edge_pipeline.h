@@ -18,6 +18,7 @@
 #include "common/time/clock.h"
 #include "common/time/step_watch.h"
 #include "common/time/thread_progress.h"
+#include "edge/backfill/backfill.h"
 #include "edge/frame_counters/frame_counters.h"
 #include "edge/nuc/nuc_control.h"
 #include "edge/pipeline/camera_health.h"
@@ -51,6 +52,8 @@ struct EdgeParts {
 ///    (supervised)                 (thermal only)                +-> queue -> Publisher
 ///   |------------ capture thread -----------|  codec thread     spool and publish threads
 ///
+///   recording -> Backfill -> Publisher   (backfill thread: what the ground lacks)
+///
 /// Frames are stamped while earlier ones are still being packed. Capture waits for neither disk nor
 /// network: full queues drop the oldest frame and count it. Only unpaced playback (rate 0) waits,
 /// because there is nothing to miss. A receive thread serves the ground's messages. Thread-bound to
@@ -82,9 +85,15 @@ class EdgePipeline {
   std::vector<Command> TakeScanOrders();
   void Answer(const CommandResult& result);
 
+  /// Returns whether the source has ended. Thread-safe.
+  bool source_ended() const { return source_ended_; }
   /// Returns true when the source has ended and each of its frames was recorded and published, or
-  /// dropped and counted. Thread-safe.
+  /// dropped and counted, and the ground has what it can have of them. Thread-safe.
   bool finished() const;
+  /// Returns how many recorded frames the ground lacks, as far as is known, and how many were sent
+  /// to it from the recording. Thread-safe.
+  std::uint64_t frames_lacking() const { return backfill_ ? backfill_->lacking() : 0; }
+  std::uint64_t frames_backfilled() const { return backfill_ ? backfill_->arrived() : 0; }
   /// Returns the state of the camera's correction as of the newest thermal frame. Thread-safe.
   NucReport nuc() const { return nuc_report_.Get().value_or(NucReport()); }
   /// Steps of the wall clock since the start and their sum, which capture times do not follow: the
@@ -107,6 +116,8 @@ class EdgePipeline {
     Image<std::uint16_t> pixels;
   };
 
+  /// Returns whether each captured frame was recorded and published, or dropped and counted.
+  bool IsEachFrameSettled() const;
   void Capture(const std::stop_token& stop);
   Result<SourceItem> Read(const std::stop_token& stop);
   void Process(RawFrame raw, const std::stop_token& stop);
@@ -128,6 +139,7 @@ class EdgePipeline {
   void Record(const std::stop_token& stop);
   void RecordMessages();
   void Publish(const std::stop_token& stop);
+  void RunBackfill(const std::stop_token& stop) { backfill_->Run(stop); }
   /// Runs on the capture thread, which alone talks to the camera.
   void ServeNucCommands();
   void Execute(const Command& command);
@@ -190,9 +202,11 @@ class EdgePipeline {
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;
   BoundedQueue<EncodedFramePtr> publish_queue_;
+  std::unique_ptr<Backfill> backfill_;  ///< nullptr without a recording, and if it is turned off.
   std::jthread receive_thread_;
   std::jthread spool_thread_;
   std::jthread publish_thread_;
+  std::jthread backfill_thread_;
   std::jthread codec_thread_;
   std::future<void> capture_ended_;
   std::jthread capture_thread_;

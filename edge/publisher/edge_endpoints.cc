@@ -5,6 +5,8 @@ namespace isotherm {
 Status EdgeEndpoints::Open(const Participant& participant, RefusalCounter& refusals) {
   ISOTHERM_RETURN_IF_ERROR(depth.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(thermal.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(backfill_depth.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(backfill_thermal.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(external_odometry.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(rig.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(status.Open(participant));

@@ -17,6 +17,8 @@ struct EdgeEndpoints {
 
   Writer<EncodedDepthFrame> depth;
   Writer<EncodedThermalFrame> thermal;
+  Writer<Backfilled<EncodedDepthFrame>> backfill_depth;
+  Writer<Backfilled<EncodedThermalFrame>> backfill_thermal;
   Writer<ExternalOdometrySample> external_odometry;
   Writer<RigDescription> rig;
   Writer<EdgeStatus> status;

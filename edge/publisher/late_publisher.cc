@@ -72,6 +72,14 @@ Status LatePublisher::Publish(const EncodedThermalFrame& frame, std::stop_token 
   return link() != nullptr ? link()->Publish(frame, std::move(stop)) : NoLink();
 }
 
+Result<bool> LatePublisher::Backfill(const EncodedDepthFrame& frame) {
+  return link() != nullptr ? link()->Backfill(frame) : Err(NoLink());
+}
+
+Result<bool> LatePublisher::Backfill(const EncodedThermalFrame& frame) {
+  return link() != nullptr ? link()->Backfill(frame) : Err(NoLink());
+}
+
 Status LatePublisher::Publish(const ExternalOdometrySample& sample, std::stop_token stop) {
   return link() != nullptr ? link()->Publish(sample, std::move(stop)) : NoLink();
 }

@@ -31,6 +31,8 @@ class LatePublisher final : public Publisher {
   Status Announce(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override;
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override;
+  Result<bool> Backfill(const EncodedDepthFrame& frame) override;
+  Result<bool> Backfill(const EncodedThermalFrame& frame) override;
   Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) override;
   Status Publish(EdgeStatus status) override;
   Status Answer(const CommandResult& result) override;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/messages/frame_number_set.h"
 #include "common/time/time_types.h"
 #include "edge/publisher/flow_window.h"
 #include "edge/publisher/published_stream.h"
@@ -19,16 +20,25 @@ class OutgoingStream {
 
   void BeginSession() {
     counts_ = {};
+    published_ = FrameNumberSet(kMaxGaps);
     window_.BeginSession();
     sent_.BeginSession();
   }
   /// Enters that a frame was written. It must have been entered into sent() before the write.
   void OnPublished(std::uint64_t number) {
     ++counts_.published;
+    published_.Add(number);
     window_.OnPublished(number);
     counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
   }
   void OnFailed() { ++counts_.failed; }
+  /// Enters that a frame was sent from the recording. Returns whether it was the first time.
+  bool OnBackfilled(std::uint64_t number) {
+    if (!published_.Add(number)) return false;
+    ++counts_.published;
+    counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
+    return true;
+  }
 
   /// Returns whether one of the `readers` has just come, so that its hello may still be on its way.
   bool HasNewReader(int readers, SteadyTime now) {
@@ -48,7 +58,11 @@ class OutgoingStream {
   /// A ground that has just come may read before its hello is here.
   static constexpr Nanoseconds kHelloGrace = std::chrono::milliseconds(500);
 
+  /// Gaps that are remembered; frames of those before count as published.
+  static constexpr std::size_t kMaxGaps = 4096;
+
   StreamPublished counts_;
+  FrameNumberSet published_{kMaxGaps};
   FlowWindow window_;
   PublishedStream sent_;
   int readers_ = 0;              ///< When last looked at.

@@ -25,6 +25,10 @@ class PublishedStream {
     if (newest_.size() > kRemembered) newest_.pop_front();
   }
 
+  /// To be called before a frame is written that the ground lacks, whether it was sent before or
+  /// not.
+  void NoteAgain() { ++count_; }
+
   /// Says why the receipt cannot be true: more than was published cannot have been received.
   std::optional<RefusalCause> Check(const StreamReceipt& receipt) const {
     if (receipt.next <= next_ && receipt.received <= count_) return std::nullopt;
@@ -51,8 +55,8 @@ class PublishedStream {
     CaptureTime capture_time{};
   };
 
-  std::uint64_t next_ = 0;  ///< One above the highest number.
-  std::uint64_t count_ = 0;
+  std::uint64_t next_ = 0;    ///< One above the highest number.
+  std::uint64_t count_ = 0;   ///< Frames that were sent, each time.
   std::deque<Frame> newest_;  ///< Ascending.
 };
 

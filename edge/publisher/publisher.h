@@ -38,6 +38,7 @@ struct PublisherStats {
   std::uint64_t flow_timeouts = 0;  ///< Frames that were published although no receipt came.
   std::uint64_t refused = 0;        ///< Samples that cannot be, or not from a ground station.
   bool ground_present = false;
+  bool takes_backfill = false;   ///< A ground that follows this rig reads what Backfill sends.
   std::string problem{};         ///< Why there is no network at all; empty if there is one.
   std::string ground_problem{};  ///< GroundRelation::Problem.
 };
@@ -71,6 +72,10 @@ class Publisher {
   /// sent and is counted.
   virtual Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) = 0;
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
+  /// Sends a frame from the recording, which the ground lacks. Returns whether it had never been
+  /// published before: it then counts as published. Waits for no window.
+  virtual Result<bool> Backfill(const EncodedDepthFrame& frame) = 0;
+  virtual Result<bool> Backfill(const EncodedThermalFrame& frame) = 0;
   /// Never waits for the ground: a pose that comes late is worth little. Once stop is requested, it
   /// has its part of the time that frames have.
   virtual Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) = 0;

@@ -51,6 +51,7 @@ Status Spool::BeginFile() {
   if (!file) return file.error();
   file_ = std::move(*file);
   path_ = file_->path;
+  recorded_frames_.BeginFile(path_);
   begun_at_ = parts_.clock.SteadyNow();
   // Each file tells the clock's steps from its own beginning, so that it can be read without the
   // others.
@@ -156,12 +157,17 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
     ISOTHERM_RETURN_IF_ERROR(writer.WriteLog(log.time, log.level, log.text));
   ISOTHERM_RETURN_IF_ERROR(WriteClockStep(frame));
   if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
-    return writer.Write(*depth, frame.arrival);
+    ISOTHERM_RETURN_IF_ERROR(writer.Write(*depth, frame.arrival));
+    recorded_frames_.Add(Sensor::kDepth, depth->header.frame_number, time);
+    return OkStatus();
   }
   const auto& thermal = std::get<EncodedThermalFrame>(frame.content);
   NoteShutter(thermal);
   // Noting the shutter may have ended the file: then there is no writer any more.
-  return IsRecording() ? writer.Write(thermal, frame.arrival) : OkStatus();
+  if (!IsRecording()) return OkStatus();
+  ISOTHERM_RETURN_IF_ERROR(writer.Write(thermal, frame.arrival));
+  recorded_frames_.Add(Sensor::kThermal, thermal.header.frame_number, time);
+  return OkStatus();
 }
 
 Status Spool::WriteClockStep(const EncodedFrame& frame) {

@@ -19,6 +19,7 @@
 #include "edge/frame_counters/frame_counters.h"
 #include "edge/spool/disk_watch.h"
 #include "edge/spool/encoded_frame.h"
+#include "edge/spool/recorded_frames.h"
 
 namespace isotherm {
 
@@ -89,6 +90,9 @@ class Spool {
   /// Writes the summary. The first error of the whole recording, or ok.
   Status Close();
 
+  /// Returns what the recording has. Thread-safe, as long as the spool lives.
+  RecordedFrames& recorded_frames() { return recorded_frames_; }
+
   /// Thread-safe.
   SpoolStatus status() const { return newest_status_.Get().value_or(SpoolStatus()); }
 
@@ -138,6 +142,7 @@ class Spool {
   std::optional<CaptureTime> shutter_closed_at_;
   Nanoseconds wall_minus_time_{0};  ///< As the newest file says.
   LatestValue<SpoolStatus> newest_status_;
+  RecordedFrames recorded_frames_;
 };
 
 }  // namespace isotherm

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "ground/cli/convert_recording.h"
+#include "ground/conversion/convert_recording.h"
 
 namespace isotherm {
 

@@ -10,8 +10,8 @@
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
 #include "common/recording/clock_record.h"
-#include "ground/cli/convert_recording.h"
 #include "ground/cli/recording_damage.h"
+#include "ground/conversion/convert_recording.h"
 
 namespace isotherm {
 namespace {

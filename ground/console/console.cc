@@ -1,9 +1,6 @@
 #include "ground/console/console.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <utility>
 #include <variant>
@@ -23,11 +20,6 @@ namespace {
 
 /// The reconstruction goes first.
 constexpr int kNiceness = 10;
-
-void LowerPriority() {
-  // Of this thread only, which is what Linux does.
-  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceness));
-}
 
 WebServerOptions WithLimits(WebServerOptions server, const ConsoleOptions& options) {
   // A browser keeps up to six connections, of which one is the WebSocket.
@@ -90,7 +82,7 @@ ConsoleServices Console::Parts::Counted(ConsoleServices services) {
 }
 
 void Console::Parts::Present(const std::stop_token& stop) {
-  LowerPriority();
+  LowerThreadPriority(kNiceness);
   while (!stop.stop_requested()) {
     const Nanoseconds patience = presenter.Turn();
     inbox.Wait(patience, stop);

@@ -31,6 +31,8 @@ namespace {
 /// Fractions of the progress; the rest is writing results.
 constexpr double kFramesFraction = 0.60, kMergeFraction = 0.05, kFinishingFraction = 0.25;
 constexpr double kDelayFraction = 0.05;
+Status Stopped() { return Unavailable("told to stop"); }
+
 /// Where both passes end.
 constexpr double kPassesFraction = kFramesFraction + kMergeFraction + kFinishingFraction;
 
@@ -66,6 +68,7 @@ class InlineDriver {
 
   Status Run() {
     const auto take = [this](RecordedItem& item) {
+      if (request_.stop.stop_requested()) return;  // What is left is only read.
       std::visit([this](auto& recorded) { Take(recorded); }, item);
       // As many as are complete: memory does not grow with the recording.
       while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -79,6 +82,7 @@ class InlineDriver {
     });
     // Frames that wait for a partner: none will come.
     while (const auto frame = assembler_.Flush()) Process(*frame);
+    if (request_.stop.stop_requested()) return Stopped();
     pipeline_.Finish([this](double fraction) {
       if (request_.progress)
         request_.progress(kFramesFraction + kMergeFraction * fraction, "putting sub-maps together");
@@ -314,6 +318,8 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   stats["source"] = DescribeSource(request, info, driver);
   stats["elapsed_s"] = elapsed.count();
   stats["processor"] = DescribeProcessor(used, pipeline.model().trajectory);
+  if (request.describe) request.describe(stats);
+  if (request.stop.stop_requested()) return Err(Stopped());
   const auto progress = [&](std::string_view what, double fraction) {
     constexpr double kBefore = kPassesFraction + kDelayFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "common/geometry/rigid_transform.h"
 #include "common/radiometry/smooth_surface.h"
 #include "common/rig/rig.h"
+#include "ground/json/json.h"
 #include "ground/offline/held_out_report.h"
 #include "ground/options/ground_options.pb.h"
 
@@ -27,6 +29,10 @@ struct ReconstructRequest {
   std::filesystem::path model;
   /// Instead of the calibration in the recording.
   std::optional<Rig> rig;
+  /// Adds to stats.json what the caller knows of the scan. May be empty.
+  std::function<void(Json& stats)> describe;
+  /// Ends it early when requested: kUnavailable, and nothing is written.
+  std::stop_token stop;
   /// Called now and then with the fraction done (0..1) and what is being done.
   std::function<void(double fraction, std::string_view text)> progress;
 };

@@ -86,6 +86,7 @@ std::string RigText(const StreamCounters& counters) {
 std::string StreamText(const char* name, const StreamCounters& counters, std::uint64_t recorded) {
   std::string text = fmt::format("{:<8} {} published = {} received + {} missing; {} recorded", name,
                                  counters.published, counters.received, counters.missing, recorded);
+  if (counters.late > 0) text += fmt::format("; {} came late", counters.late);
   if (counters.refused > 0) text += fmt::format("; {} samples refused", counters.refused);
   return text + "\n" + RigText(counters);
 }

@@ -28,6 +28,26 @@ constexpr std::uint64_t kMaxReserveBytes = 100U << 20;
 constexpr std::uint64_t kReservePart = 10;
 constexpr double kMegabyte = 1 << 20;
 
+void AddCounts(const ScanRecorder& recorder, RecordingProgress& progress) {
+  const auto add = [](const RecorderCounts& counts, std::uint64_t& frames,
+                      NotRecordedCounts& left_out) {
+    frames += counts.recorded;
+    left_out[NotRecorded::kDiskFailed] += counts.lost;
+    left_out[NotRecorded::kUnwritable] += counts.unwritable;
+  };
+  add(recorder.counts(Sensor::kDepth), progress.depth_frames, progress.depth_left_out);
+  add(recorder.counts(Sensor::kThermal), progress.thermal_frames, progress.thermal_left_out);
+}
+
+/// Sets the counts that a recorder keeps; others keep the rest.
+void EnterCounts(const ScanRecorder& recorder, RecordingProgress& progress) {
+  progress.depth_frames = progress.thermal_frames = 0;
+  for (const NotRecorded reason : {NotRecorded::kDiskFailed, NotRecorded::kUnwritable}) {
+    progress.depth_left_out[reason] = progress.thermal_left_out[reason] = 0;
+  }
+  AddCounts(recorder, progress);
+}
+
 }  // namespace
 
 void RecordingLoop::Run(RecordingQueue& queue, const std::stop_token& stop) {
@@ -40,6 +60,7 @@ void RecordingLoop::Run(RecordingQueue& queue, const std::stop_token& stop) {
       std::visit([this](const auto& value) { Handle(value); }, *item);
     } else if (recorder_ && !flushed_) {
       recorder_->Flush();
+      if (late_recorder_) late_recorder_->Flush();
       flushed_ = true;
       Enter();
     }
@@ -70,6 +91,7 @@ void RecordingLoop::Handle(const SessionStart& start) {
 void RecordingLoop::Handle(const RigDescription& rig) {
   start_.rig = rig;
   if (recorder_) recorder_->Write(rig);
+  if (late_recorder_) late_recorder_->Write(rig);
 }
 
 template <typename Frame>
@@ -79,10 +101,19 @@ void RecordingLoop::HandleFrame(const Frame& frame, Sensor sensor) {
   if (nearly_full_) {
     start_.recording->CountLeftOut(sensor, NotRecorded::kDiskNearlyFull);
   } else {
-    recorder_->Write(frame);
+    RecorderOf(frame.is_late).Write(frame);
     flushed_ = false;
   }
   Enter();
+}
+
+ScanRecorder& RecordingLoop::RecorderOf(bool is_late) {
+  if (!is_late) return *recorder_;
+  if (!late_recorder_) {
+    late_recorder_ = std::make_unique<ScanRecorder>(start_.folder / "scan-late.mcap", options_,
+                                                    start_.rig, clock_);
+  }
+  return *late_recorder_;
 }
 
 void RecordingLoop::Handle(const Feedback& feedback) {
@@ -149,34 +180,38 @@ void RecordingLoop::StopForReserve(std::uint64_t free_bytes, std::uint64_t reser
       (files.empty() ? start_.folder / "scan.mcap" : files.back()).string(),
       static_cast<double>(free_bytes) / kMegabyte, static_cast<double>(reserve_bytes) / kMegabyte));
   recorder_->EndFile(why);
+  if (late_recorder_) late_recorder_->EndFile(why);
   LOG(Ground, Warning) << why.message();
 }
 
 void RecordingLoop::Enter() {
-  const RecorderCounts depth = recorder_->counts(Sensor::kDepth);
-  const RecorderCounts thermal = recorder_->counts(Sensor::kThermal);
-  const auto enter = [](const RecorderCounts& counts, NotRecordedCounts& left_out) {
-    left_out[NotRecorded::kDiskFailed] = counts.lost;
-    left_out[NotRecorded::kUnwritable] = counts.unwritable;
-  };
   start_.recording->Update([&](auto& progress) {
     progress.files = recorder_->files();
-    progress.depth_frames = depth.recorded;
-    progress.thermal_frames = thermal.recorded;
     progress.bytes = recorder_->bytes();
-    enter(depth, progress.depth_left_out);
-    enter(thermal, progress.thermal_left_out);
+    EnterCounts(*recorder_, progress);
     progress.paused = !recorder_->is_recording();
     progress.status = recorder_->status();
     progress.disk_error = recorder_->disk_error();
+    if (!late_recorder_) return;
+    const std::uint64_t in_order = progress.depth_frames + progress.thermal_frames;
+    progress.late_files = late_recorder_->files();
+    progress.bytes += late_recorder_->bytes();
+    AddCounts(*late_recorder_, progress);
+    progress.late_frames = progress.depth_frames + progress.thermal_frames - in_order;
+    if (progress.status.ok()) progress.status = late_recorder_->status();
+    if (progress.disk_error.ok()) progress.disk_error = late_recorder_->disk_error();
   });
 }
 
 void RecordingLoop::End() {
   if (recorder_) {
+    if (late_recorder_) {
+      if (const Status closed = late_recorder_->Close(); !closed.ok()) status_ = closed;
+    }
     if (const Status closed = recorder_->Close(); !closed.ok()) status_ = closed;
     Enter();
     recorder_.reset();
+    late_recorder_.reset();
   }
   if (start_.recording) {
     start_.recording->Update([](auto& progress) {

@@ -58,6 +58,8 @@ class RecordingLoop {
   void LookAtDisk();
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
   void StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes);
+  /// Returns where a frame goes; there is a recorder_.
+  ScanRecorder& RecorderOf(bool is_late);
   /// Enters what was written so far into the recording's progress.
   void Enter();
   void End();
@@ -69,7 +71,8 @@ class RecordingLoop {
   const LookAtSpace look_at_space_;
   SessionStart start_;
   std::unique_ptr<ScanRecorder> recorder_;
-  bool nearly_full_ = false;  ///< The space that is free is for the results.
+  std::unique_ptr<ScanRecorder> late_recorder_;  ///< Null before the first late frame.
+  bool nearly_full_ = false;                     ///< The space that is free is for the results.
   bool flushed_ = true;
   SteadyTime opened_{};
   SteadyTime next_look_{};

@@ -34,6 +34,10 @@ std::uint64_t Sum(const NotRecordedCounts& counts);
 struct RecordingProgress {
   std::filesystem::path path{};                ///< The first file's; empty: there is no recording.
   std::vector<std::filesystem::path> files{};  ///< More than one after an error or a full disk.
+  /// What came too late for the reconstruction has files of its own, so that each is in the order
+  /// of time.
+  std::vector<std::filesystem::path> late_files{};
+  std::uint64_t late_frames = 0;  ///< Of both streams, in these; in the next two as well.
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
   std::uint64_t bytes = 0;

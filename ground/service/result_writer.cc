@@ -14,6 +14,7 @@
 #include "ground/results/scan_result.h"
 #include "ground/service/conclusion.h"
 #include "ground/service/link_counters.h"
+#include "ground/service/scan_completion.h"
 
 namespace isotherm {
 namespace {
@@ -107,7 +108,7 @@ std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
 void ResultWriter::Run(const std::stop_token& stop) {
   while (std::optional<EndedScan> ended = Take(stop)) {
     progress_.Busy(clock_.SteadyNow());
-    FinishScan(*ended);
+    FinishScan(*ended, stop);
     progress_.Idle();
     // The reserve on the disk was for these results; a scan under way says again what it needs.
     if (--board_.scans_being_written == 0) board_.result_bytes = 0;
@@ -115,7 +116,7 @@ void ResultWriter::Run(const std::stop_token& stop) {
   }
 }
 
-void ResultWriter::FinishScan(EndedScan& ended) {
+void ResultWriter::FinishScan(EndedScan& ended, const std::stop_token& stop) {
   if (!ended.scan) return;  // Recorded only.
   LiveScan& scan = *ended.scan;
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
@@ -135,6 +136,37 @@ void ResultWriter::FinishScan(EndedScan& ended) {
   WriteStandardOutput(*text + CountersText(counters, recording) +
                       ConclusionText(scan.behind(), scan.areas(),
                                      options_.feedback().done_fraction(), recording.path));
+  if (NeedsCompletion(options_, recording)) Complete(ended, stats, recording, stop);
+}
+
+void ResultWriter::Complete(const EndedScan& ended, const Json& stats,
+                            const RecordingProgress& recording, const std::stop_token& stop) {
+  LOG(Ground, Info) << "frames came late, frames=" << recording.late_frames
+                    << ": the recording and the results are completed";
+  std::stop_source give_up;
+  const std::stop_callback on_stop(stop, [&give_up] { give_up.request_stop(); });
+  const auto go_on = [this, &give_up] {
+    progress_.Busy(clock_.SteadyNow());
+    MutexLock lock(mutex_);
+    if (waiting_) give_up.request_stop();
+  };
+  const auto describe = [&stats, &recording](Json& json) {
+    for (const char* part : {"link", "feedback", "console"}) {
+      if (stats.contains(part)) json[part] = stats[part];
+    }
+    json["link"]["frames_that_came_late"] = recording.late_frames;
+  };
+  const Result<std::string> completed = CompleteScan({.options = options_,
+                                                      .folder = ended.start.folder,
+                                                      .recording = recording,
+                                                      .describe = describe,
+                                                      .go_on = go_on,
+                                                      .stop = give_up.get_token()});
+  if (completed) return WriteStandardOutput(*completed);
+  LOG(Ground, Warning)
+      << "the scan is not completed: " << completed.error().message() << "; what came late is in "
+      << (recording.late_files.empty() ? recording.path : recording.late_files.front()).string()
+      << " (isotherm merge-recordings, isotherm reconstruct)";
 }
 
 Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayReport& delay,

@@ -65,7 +65,10 @@ class ResultWriter {
   void GiveUp(const EndedScan& ended);
   std::optional<EndedScan> Take(const std::stop_token& stop);
   /// Processes a scan's last frames, checks its delay and writes its results.
-  void FinishScan(EndedScan& ended);
+  void FinishScan(EndedScan& ended, const std::stop_token& stop);
+  /// Brings in what came too late for the model, and gives up when another scan waits.
+  void Complete(const EndedScan& ended, const Json& stats, const RecordingProgress& recording,
+                const std::stop_token& stop);
   /// Writes into the scan's folder or, if that fails, into another. Returns the summary.
   Result<std::string> WriteWithFallback(LiveScan& scan, const DelayReport& delay, const Json& stats,
                                         const std::filesystem::path& folder);

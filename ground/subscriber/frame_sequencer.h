@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "common/messages/frame_number_set.h"
 #include "common/time/time_types.h"
-#include "ground/subscriber/receipt_tracker.h"
 
 namespace isotherm {
 
@@ -70,7 +70,7 @@ class FrameSequencer {
   }
   /// All numbers below are delivered or given up.
   std::uint64_t handled() const { return handled_; }
-  const ReceiptTracker& receipts() const { return receipts_; }
+  const FrameNumberSet& receipts() const { return receipts_; }
 
  private:
   /// Holds a frame that came before an earlier one.
@@ -88,7 +88,7 @@ class FrameSequencer {
   }
 
   const Nanoseconds window_;
-  ReceiptTracker receipts_;
+  FrameNumberSet receipts_;
   std::map<std::uint64_t, Waiting> waiting_;
   std::uint64_t handled_ = 0;
 };

@@ -5,6 +5,8 @@ namespace isotherm {
 Status GroundEndpoints::Open(const Participant& participant, StreamRefusals& refusals) {
   ISOTHERM_RETURN_IF_ERROR(depth.Open(participant, &refusals.depth));
   ISOTHERM_RETURN_IF_ERROR(thermal.Open(participant, &refusals.thermal));
+  ISOTHERM_RETURN_IF_ERROR(backfill_depth.Open(participant, &refusals.depth));
+  ISOTHERM_RETURN_IF_ERROR(backfill_thermal.Open(participant, &refusals.thermal));
   ISOTHERM_RETURN_IF_ERROR(external_odometry.Open(participant, &refusals.all));
   ISOTHERM_RETURN_IF_ERROR(rig.Open(participant, &refusals.all));
   ISOTHERM_RETURN_IF_ERROR(status.Open(participant, &refusals.all));
@@ -17,6 +19,8 @@ Status GroundEndpoints::Open(const Participant& participant, StreamRefusals& ref
   ISOTHERM_RETURN_IF_ERROR(wait_set.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(depth));
   ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(thermal));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(backfill_depth));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(backfill_thermal));
   ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(external_odometry));
   ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(rig));
   ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(status));

@@ -17,6 +17,8 @@ struct GroundEndpoints {
 
   Reader<EncodedDepthFrame> depth;
   Reader<EncodedThermalFrame> thermal;
+  Reader<Backfilled<EncodedDepthFrame>> backfill_depth;
+  Reader<Backfilled<EncodedThermalFrame>> backfill_thermal;
   Reader<ExternalOdometrySample> external_odometry;
   Reader<RigDescription> rig;
   Reader<EdgeStatus> status;

@@ -12,6 +12,7 @@ struct ReceivedDepth {
   std::shared_ptr<const EncodedDepthFrame> encoded;
   CaptureTime arrival;   ///< Ground wall clock.
   CaptureTime queued{};  ///< When it was handed to the reconstruction, by the same clock.
+  bool is_late = false;  ///< Came behind its place in the order.
 };
 /// The same for a thermal frame.
 struct ReceivedThermal {
@@ -19,6 +20,7 @@ struct ReceivedThermal {
   std::shared_ptr<const EncodedThermalFrame> encoded;
   CaptureTime arrival;   ///< Ground wall clock.
   CaptureTime queued{};  ///< When it was handed to the reconstruction, by the same clock.
+  bool is_late = false;  ///< Came behind its place in the order.
 };
 
 }  // namespace isotherm

@@ -93,8 +93,8 @@ bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, 
     }
   }
   // A frame that follows those before proves the pending ones wrong: they said that the stream had
-  // jumped away.
-  RefusePending();
+  // jumped away. One that fills a hole proves nothing.
+  if (!newest_ || mark.number > newest_->number) RefusePending();
   Accept(std::move(item), mark);
   return true;
 }
@@ -124,6 +124,7 @@ void StreamReceiver<ReceivedFrame>::Accept(ReceivedFrame&& item, const FrameMark
   if (sequencer_->Add(mark.number, std::move(item), mark.arrival) != ArrivalOrder::kLate) return;
   ++tally_.late;
   // Add has left it where it was.
+  item.is_late = true;                                // NOLINT(bugprone-use-after-move)
   if (deliver_late_) deliver_late_(std::move(item));  // NOLINT(bugprone-use-after-move)
 }
 
@@ -201,7 +202,7 @@ StreamTally StreamReceiver<ReceivedFrame>::tally(std::uint64_t session) const {
   }
   StreamTally tally = tally_;
   tally.next = sequencer_->receipts().next();
-  tally.received = sequencer_->receipts().received();
+  tally.received = sequencer_->receipts().size();
   tally.refused = refusals_->counts();
   // The counter runs over all sessions; the tally is of this one.
   for (std::size_t i = 0; i < tally.refused.size(); ++i) tally.refused[i] -= refused_before_[i];
@@ -211,10 +212,10 @@ StreamTally StreamReceiver<ReceivedFrame>::tally(std::uint64_t session) const {
 template <typename ReceivedFrame>
 StreamReceipt StreamReceiver<ReceivedFrame>::receipt(std::uint64_t session) const {
   if (!IsCurrent(session)) return {};
-  const ReceiptTracker& receipts = sequencer_->receipts();
+  const FrameNumberSet& receipts = sequencer_->receipts();
   return {.next = receipts.next(),
           .handled = sequencer_->handled(),
-          .received = receipts.received(),
+          .received = receipts.size(),
           .holes = receipts.NewestHoles(kMaxHoles)};
 }
 

@@ -28,6 +28,7 @@ using namespace std::chrono_literals;
 
 /// Frames that are taken of one stream before the other has its turn.
 constexpr int kFramesPerRound = 8;
+constexpr int kBackfillPerRound = 2;
 constexpr int kMessagesPerRound = 64;  ///< More is somebody sending without end.
 /// These are more frames than a reader keeps: somebody sends without end.
 constexpr int kMaxTurnsBehindFrames = 32;
@@ -35,6 +36,16 @@ constexpr int kMaxTurnsBehindFrames = 32;
 constexpr int kFramesPerReceipt = 8;
 /// Presence is looked at this often.
 constexpr Nanoseconds kIdleInterval = 100ms;
+
+/// Once it has arrived, a backfilled frame is a frame like any other, only late.
+template <typename Message>
+Message Content(Message&& message) {
+  return std::move(message);
+}
+template <typename Frame>
+Frame Content(Backfilled<Frame>&& backfilled) {
+  return std::move(backfilled.frame);
+}
 
 class DdsSubscriber final : public Subscriber {
  public:
@@ -163,6 +174,9 @@ bool DdsSubscriber::TakeRound() {
   const int taken = TakeDescriptions() + TakeMessages();
   const int depth_taken = TakeSamples(&ends_.depth, kFramesPerRound);
   const int thermal_taken = TakeSamples(&ends_.thermal, kFramesPerRound);
+  // A few at a time: what is live comes first.
+  const int backfill_taken = TakeSamples(&ends_.backfill_depth, kBackfillPerRound) +
+                             TakeSamples(&ends_.backfill_thermal, kBackfillPerRound);
   // A description may end a session, whose last frames were sent before it on other topics: those
   // have arrived by now, and are taken first.
   const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerRound;
@@ -170,7 +184,7 @@ bool DdsSubscriber::TakeRound() {
       (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames)) {
     AdmitDescriptions();
   }
-  return taken + depth_taken + thermal_taken > 0;
+  return taken + depth_taken + thermal_taken + backfill_taken > 0;
 }
 
 int DdsSubscriber::TakeDescriptions() {
@@ -205,7 +219,7 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
         if (!IsFollowed(received.edge_id)) return;
         // Comes back in OnAdmitted, now or later, if it is the rig's.
         gate_.Add(peers_.Identify(*reader, received.writer),
-                  {.content = std::move(received.message), .arrival = clock_.Now()},
+                  {.content = Content(std::move(received.message)), .arrival = clock_.Now()},
                   clock_.SteadyNow());
       },
       max_samples);
@@ -331,8 +345,10 @@ void DdsSubscriber::CloseSessions(SteadyTime now) {
 
 void DdsSubscriber::SendReceipt(SteadyTime now) {
   frames_since_receipt_ = 0;
-  // From the deadline before, so that the rate does not drift; from now after a pause.
-  receipt_due_ = std::max(receipt_due_ + options_.receipt_interval, now);
+  // From the deadline before, so that the rate does not drift; from now after a pause, and after
+  // receipts that were sent sooner because many frames came.
+  receipt_due_ =
+      std::clamp(receipt_due_ + options_.receipt_interval, now, now + options_.receipt_interval);
   const std::string edge_id = followed_.edge_id();
   if (edge_id.empty()) return;
   Receipt receipt;  // Without a session it says only which rig this ground follows.

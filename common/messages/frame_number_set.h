@@ -9,12 +9,12 @@
 
 namespace isotherm {
 
-/// Knows which frame numbers of one stream have arrived. received() + missing() = next(), always.
+/// Holds which frame numbers of one stream were seen. size() + missing() = next(), always.
 /// Memory is bounded: when there are too many holes, the oldest is given up, its frames stay
 /// missing for good. Thread-compatible.
-class ReceiptTracker {
+class FrameNumberSet {
  public:
-  explicit ReceiptTracker(std::size_t max_holes = 1024) : max_holes_(max_holes) {}
+  explicit FrameNumberSet(std::size_t max_holes = 1024) : max_holes_(max_holes) {}
 
   /// Enters `number`; false if it was here before or was given up.
   bool Add(std::uint64_t number);
@@ -22,8 +22,8 @@ class ReceiptTracker {
   bool IsNew(std::uint64_t number) const;
 
   std::uint64_t next() const { return next_; }  ///< One above the highest number.
-  std::uint64_t received() const { return received_; }
-  std::uint64_t missing() const { return next_ - received_; }
+  std::uint64_t size() const { return size_; }
+  std::uint64_t missing() const { return next_ - size_; }
   /// The newest `max` holes, ascending.
   std::vector<FrameRange> NewestHoles(std::size_t max) const;
 
@@ -32,10 +32,10 @@ class ReceiptTracker {
   Holes::const_iterator FindHole(std::uint64_t number) const;
   void AddHole(std::uint64_t first, std::uint64_t last);
 
-  const std::size_t max_holes_;
+  std::size_t max_holes_;
   Holes holes_;
   std::uint64_t next_ = 0;
-  std::uint64_t received_ = 0;
+  std::uint64_t size_ = 0;
 };
 
 }  // namespace isotherm

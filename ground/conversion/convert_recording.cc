@@ -1,4 +1,4 @@
-#include "ground/cli/convert_recording.h"
+#include "ground/conversion/convert_recording.h"
 
 #include <fmt/format.h>
 

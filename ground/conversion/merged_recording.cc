@@ -1,4 +1,4 @@
-#include "ground/cli/merged_recording.h"
+#include "ground/conversion/merged_recording.h"
 
 #include <fmt/format.h>
 

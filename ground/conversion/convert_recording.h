@@ -12,7 +12,7 @@
 #include "common/geometry/stamped_pose.h"
 #include "common/recording/recording.h"
 #include "common/simulation/depth_defects.h"
-#include "ground/cli/merged_recording.h"
+#include "ground/conversion/merged_recording.h"
 
 namespace isotherm {
 

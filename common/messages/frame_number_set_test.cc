@@ -1,4 +1,4 @@
-#include "ground/subscriber/receipt_tracker.h"
+#include "common/messages/frame_number_set.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(ReceiptTrackerTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
-  ReceiptTracker receipts;
+TEST(FrameNumberSetTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
+  FrameNumberSet receipts;
   receipts.Add(0);
   receipts.Add(10);
   for (const std::uint64_t number : {1, 9, 5}) EXPECT_TRUE(receipts.Add(number));
@@ -25,18 +25,18 @@ TEST(ReceiptTrackerTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
   EXPECT_THAT(receipts.NewestHoles(9), IsEmpty());
 }
 
-TEST(ReceiptTrackerTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
-  ReceiptTracker receipts(3);
+TEST(FrameNumberSetTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
+  FrameNumberSet receipts(3);
   for (std::uint64_t number = 1; number <= 9; number += 2) receipts.Add(number);
   EXPECT_THAT(receipts.NewestHoles(9),
               ElementsAre(FrameRange{4, 4}, FrameRange{6, 6}, FrameRange{8, 8}));
   EXPECT_FALSE(receipts.Add(0));
-  EXPECT_EQ(receipts.received() + receipts.missing(), receipts.next());
+  EXPECT_EQ(receipts.size() + receipts.missing(), receipts.next());
   EXPECT_EQ(receipts.missing(), 5U);
 }
 
-TEST(ReceiptTrackerTest, KnowsWhichNumbersItWouldTake) {
-  ReceiptTracker receipts(1);
+TEST(FrameNumberSetTest, KnowsWhichNumbersItWouldTake) {
+  FrameNumberSet receipts(1);
   for (const std::uint64_t number : {1, 3, 5}) receipts.Add(number);
   EXPECT_TRUE(receipts.IsNew(6)) << "above all";
   EXPECT_FALSE(receipts.IsNew(3)) << "here";
@@ -45,9 +45,9 @@ TEST(ReceiptTrackerTest, KnowsWhichNumbersItWouldTake) {
   EXPECT_FALSE(receipts.IsNew(0));
 }
 
-TEST(ReceiptTrackerTest, AgreesWithASetOfNumbersWhateverTheOrder) {
+TEST(FrameNumberSetTest, AgreesWithASetOfNumbersWhateverTheOrder) {
   std::mt19937 random(testing::Seed());
-  ReceiptTracker receipts;
+  FrameNumberSet receipts;
   std::set<std::uint64_t> here;
   for (int i = 0; i < 3000; ++i) {
     const std::uint64_t number = random() % 1000;
@@ -55,7 +55,7 @@ TEST(ReceiptTrackerTest, AgreesWithASetOfNumbersWhateverTheOrder) {
     ASSERT_EQ(receipts.IsNew(number), is_new) << number;
     ASSERT_EQ(receipts.Add(number), is_new) << number;
     here.insert(number);
-    ASSERT_EQ(receipts.received(), here.size());
+    ASSERT_EQ(receipts.size(), here.size());
     ASSERT_EQ(receipts.next(), *here.rbegin() + 1);
   }
   std::set<std::uint64_t> missing;

@@ -1,0 +1,220 @@
+#include "edge/backfill/backfill.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <variant>
+
+#include "common/base/log.h"
+#include "common/base/pause.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Receipts come five times a second, and with each eighth frame.
+constexpr Nanoseconds kLookInterval = 20ms;
+constexpr Nanoseconds kStalled = 1s;
+/// A chunk of the recording is written twice a second; before, nothing of it can be read.
+constexpr Nanoseconds kRetryInterval = 500ms;
+constexpr Nanoseconds kBehindInterval = 100ms;
+/// The reader goes on reading up to this far before what is wanted, rather than open the file anew.
+constexpr Nanoseconds kReadThrough = 3s;
+/// Frames are recorded in the order of their arrival; capture times of the two streams may lie so
+/// far apart.
+constexpr Nanoseconds kDisorder = 500ms;
+/// Frames of a stream that may be published and not handled without the link being full: receipts
+/// are up to 200 ms old, and the ground waits 200 ms for a missing frame.
+constexpr std::uint64_t kUsuallyUnderWay = 20;
+
+std::uint64_t Frames(const std::vector<FrameRange>& ranges) {
+  return std::accumulate(
+      ranges.begin(), ranges.end(), std::uint64_t{0},
+      [](std::uint64_t sum, const FrameRange& range) { return sum + SizeOf(range); });
+}
+
+/// Returns the part of `holes` that the ground does not wait for any more.
+std::vector<FrameRange> GivenUp(const StreamReceipt& receipt) {
+  std::vector<FrameRange> given_up;
+  for (const FrameRange& hole : receipt.holes) {
+    if (hole.first >= receipt.handled) break;
+    given_up.push_back({hole.first, std::min(hole.last, receipt.handled - 1)});
+  }
+  return given_up;
+}
+
+const FrameHeader& HeaderOf(const RecordedFrameReader::Frame& frame) {
+  return std::visit([](const auto& content) -> const FrameHeader& { return content.header; },
+                    frame);
+}
+
+Sensor SensorOf(const RecordedFrameReader::Frame& frame) {
+  return std::holds_alternative<EncodedDepthFrame>(frame) ? Sensor::kDepth : Sensor::kThermal;
+}
+
+}  // namespace
+
+Backfill::Backfill(const BackfillOptions& options, const BackfillParts& parts)
+    : options_(options), parts_(parts), window_(kMaxUnderWay, options.frames_per_s) {}
+
+void Backfill::Run(const std::stop_token& stop) {
+  while (!stop.stop_requested() && !settled_) {
+    if (!Step()) Pause(stop, kLookInterval / 4);
+  }
+  reader_.Close();
+}
+
+bool Backfill::Step() {
+  const SteadyTime now = parts_.clock.SteadyNow();
+  if (now >= next_look_) {
+    next_look_ = now + kLookInterval;
+    if (const std::optional<Receipt> receipt = parts_.publisher.receipt())
+      TakeReceipt(*receipt, now);
+    Settle(now);
+  }
+  if (!receipt_ || settled_ || now < retry_at_ || !window_.MaySend(now)) return false;
+  return SendNext(now);
+}
+
+void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
+  receipt_ = receipt;
+  std::uint64_t lacking = 0;
+  // Once nothing more is captured, what does not come by itself will not come.
+  const bool is_stalled = is_ending_ && now - progress_at_ > kStalled;
+  for (const auto& [sensor, stream] : {std::pair(Sensor::kDepth, &receipt_->depth),
+                                       std::pair(Sensor::kThermal, &receipt_->thermal)}) {
+    std::vector<FrameRange> missing = stream->holes;
+    // What is behind the newest that arrived may be on its way, or wait on this side.
+    missing.push_back({stream->next, std::numeric_limits<std::uint64_t>::max()});
+    lacking += Frames(parts_.recorded.Of(sensor, missing));
+    window_.OnReceipt(sensor, stream->holes, now);
+    wanted_[static_cast<std::size_t>(sensor)] =
+        parts_.recorded.Of(sensor, is_stalled ? missing : GivenUp(*stream));
+  }
+  lacking_ = lacking;
+  arrived_ = window_.confirmed();
+}
+
+void Backfill::Settle(SteadyTime now) {
+  if (!source_ended_) return;
+  const std::uint64_t lacking = lacking_;
+  if (!std::exchange(is_ending_, true) || lacking < lacked_) progress_at_ = now;
+  lacked_ = lacking;
+  const PublisherStats link = parts_.publisher.stats();
+  // A ground that never said anything is not waited for, one that was cut off is.
+  if (receipt_ && options_.waits_for_ground && !link.ground_present) progress_at_ = now;
+  if (receipt_ && lacking > 0 && now - progress_at_ < options_.patience) return;
+  if (receipt_ && lacking > 0) {
+    LOG(Edge, Warning) << "the ground does not take what it lacks any more, frames=" << lacking
+                       << "; the recording has them (isotherm merge-recordings)";
+  }
+  settled_ = true;
+}
+
+bool Backfill::IsWanted(Sensor sensor, std::uint64_t number) const {
+  const std::vector<FrameRange>& ranges = wanted_[static_cast<std::size_t>(sensor)];
+  const auto range = std::ranges::lower_bound(ranges, number, {}, &FrameRange::last);
+  return range != ranges.end() && range->first <= number && !window_.IsUnderWay(sensor, number);
+}
+
+std::optional<Backfill::Target> Backfill::FindTarget() const {
+  std::optional<Target> first;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    for (const FrameRange& range : wanted_[static_cast<std::size_t>(sensor)]) {
+      std::uint64_t number = range.first;
+      // No more are under way than the window holds.
+      while (number <= range.last && window_.IsUnderWay(sensor, number)) ++number;
+      if (number > range.last) continue;
+      const auto place = parts_.recorded.PlaceOf(sensor, number);
+      if (place && (!first || place->time < first->place.time)) first = {sensor, number, *place};
+      break;
+    }
+  }
+  return first;
+}
+
+bool Backfill::GoTo(const Target& target, SteadyTime now) {
+  const auto& at = reader_.at();
+  const std::optional<std::uint64_t>& passed = passed_[static_cast<std::size_t>(target.sensor)];
+  const bool leads_there = at && at->file == target.place.file && passed &&
+                           *passed < target.number && target.place.time <= at->time + kReadThrough;
+  if (leads_there) return true;
+  const Status gone = reader_.GoTo({target.place.file, target.place.time - kDisorder});
+  if (!gone.ok()) {
+    if (!std::exchange(unreadable_reported_, true)) {
+      LOG(Edge, Warning) << "what the ground lacks cannot be read: " << gone.message();
+    }
+    parts_.recorded.ForgetRest(target.sensor, target.number, target.place.file);
+    retry_at_ = now + kRetryInterval;
+    return false;
+  }
+  passed_ = {};
+  passed_[static_cast<std::size_t>(target.sensor)] =
+      target.number - std::min<std::uint64_t>(target.number, 1);
+  return true;
+}
+
+void Backfill::NotePassed(Sensor sensor, std::uint64_t number) {
+  std::optional<std::uint64_t>& passed = passed_[static_cast<std::size_t>(sensor)];
+  if (passed && number <= *passed) return;  // Before the target.
+  if (passed && number > *passed + 1) {
+    for (const FrameRange& wanted : wanted_[static_cast<std::size_t>(sensor)]) {
+      const FrameRange skipped{std::max(wanted.first, *passed + 1),
+                               std::min(wanted.last, number - 1)};
+      if (skipped.first <= skipped.last) parts_.recorded.Forget(sensor, skipped);
+    }
+  }
+  passed = number;
+}
+
+bool Backfill::SendNext(SteadyTime now) {
+  const std::optional<Target> target = FindTarget();
+  if (!target || !MayDisturb(now) || !GoTo(*target, now)) return false;
+  while (true) {
+    const Result<std::optional<RecordedFrameReader::Frame>> frame = reader_.Next();
+    if (!frame) continue;  // Damaged; the frames behind it are good.
+    if (!*frame) {
+      // The file goes on, but not on the disk yet; or it has ended before what it should have.
+      parts_.recorded.ForgetRest(target->sensor, target->number, target->place.file);
+      reader_.Close();
+      retry_at_ = now + kRetryInterval;
+      return false;
+    }
+    const Sensor sensor = SensorOf(**frame);
+    const std::uint64_t number = HeaderOf(**frame).frame_number;
+    NotePassed(sensor, number);
+    if (!IsWanted(sensor, number)) continue;
+    Send(**frame, now);
+    return true;
+  }
+}
+
+bool Backfill::MayDisturb(SteadyTime now) {
+  const PublisherStats link = parts_.publisher.stats();
+  const auto is_behind = [](const StreamPublished& sent, const StreamReceipt& receipt) {
+    return sent.next_frame_number > receipt.handled + kUsuallyUnderWay;
+  };
+  const bool live_is_behind =
+      !source_ended_ && (parts_.is_live_behind() || is_behind(link.depth, receipt_->depth) ||
+                         is_behind(link.thermal, receipt_->thermal));
+  if (!live_is_behind && link.takes_backfill) return true;
+  window_.OnLiveBehind();
+  retry_at_ = now + kBehindInterval;
+  return false;
+}
+
+void Backfill::Send(const RecordedFrameReader::Frame& frame, SteadyTime now) {
+  if (!std::exchange(reported_, true)) {
+    LOG(Edge, Info) << "the ground lacks frames of the recording, and is sent them: " << lacking_;
+  }
+  const Sensor sensor = SensorOf(frame);
+  // Entered first: a frame that the link refuses is tried again after kLostAfter, not at once.
+  window_.OnSent(sensor, HeaderOf(frame).frame_number, now);
+  const Result<bool> sent =
+      std::visit([this](const auto& content) { return parts_.publisher.Backfill(content); }, frame);
+  if (sent && *sent) parts_.counters.CountPublishedAfterAll(sensor);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "common/messages/messages.h"
+#include "common/time/clock.h"
+#include "edge/backfill/backfill_window.h"
+#include "edge/frame_counters/frame_counters.h"
+#include "edge/publisher/publisher.h"
+#include "edge/spool/recorded_frame_reader.h"
+#include "edge/spool/recorded_frames.h"
+
+namespace isotherm {
+
+/// Says how frames are sent again.
+struct BackfillOptions {
+  double frames_per_s = 200.0;  ///< At most, of both streams together.
+  Nanoseconds patience{};       ///< After the source has ended, without progress.
+  /// After the source has ended: a ground that is gone is waited for until it is back.
+  bool waits_for_ground = false;
+};
+
+/// Holds what backfill works with; all of it must outlive it.
+struct BackfillParts {
+  Publisher& publisher;
+  RecordedFrames& recorded;
+  FrameCounters& counters;
+  const Clock& clock;
+  /// Returns whether frames wait before the link.
+  std::function<bool()> is_live_behind;
+};
+
+/// Sends from the recording what the ground lacks: frames that an outage or a narrow link has cost,
+/// and those before a ground that came late. The ground's receipts say which these are. What is
+/// being captured comes first. Run() belongs to a thread of its own; the rest is thread-safe.
+class Backfill {
+ public:
+  Backfill(const BackfillOptions& options, const BackfillParts& parts);
+
+  void Run(const std::stop_token& stop);
+
+  /// The source has ended, and all its frames are recorded and published, or dropped.
+  void NoteEnd() { source_ended_ = true; }
+  /// Returns whether the ground has everything that it can have. Once true, nothing more is sent.
+  /// False before NoteEnd.
+  bool is_settled() const { return settled_; }
+  /// Returns how many recorded frames the ground lacks, as far as is known.
+  std::uint64_t lacking() const { return lacking_; }
+  /// Returns how many frames were sent from the recording and have arrived.
+  std::uint64_t arrived() const { return arrived_; }
+
+ private:
+  static constexpr std::size_t kMaxUnderWay = 28;  ///< Below the history of the topics (qos.h).
+  /// What is wanted of each stream, by Sensor; ascending.
+  using Wanted = std::array<std::vector<FrameRange>, 2>;
+
+  /// Does what is due; returns whether something was sent.
+  bool Step();
+  void TakeReceipt(const Receipt& receipt, SteadyTime now);
+  /// Says whether the end has come, from the newest receipt.
+  void Settle(SteadyTime now);
+  /// Sends the next frame that is wanted; false if there is none, or none can be read by now.
+  bool SendNext(SteadyTime now);
+  /// Returns whether a frame may be sent now without delaying what is live.
+  bool MayDisturb(SteadyTime now);
+  bool IsWanted(Sensor sensor, std::uint64_t number) const;
+  /// A frame that is wanted, and a place before it.
+  struct Target {
+    Sensor sensor{};
+    std::uint64_t number = 0;
+    RecordedFrames::Place place;
+  };
+  /// Returns the one that is the first in the recording, of both streams.
+  std::optional<Target> FindTarget() const;
+  /// Brings the reader before it. Returns whether it can be read by now.
+  bool GoTo(const Target& target, SteadyTime now);
+  /// The reader has come to this frame: those wanted before it that it did not meet are not there.
+  void NotePassed(Sensor sensor, std::uint64_t number);
+  void Send(const RecordedFrameReader::Frame& frame, SteadyTime now);
+
+  const BackfillOptions options_;
+  const BackfillParts parts_;
+  BackfillWindow window_;
+  RecordedFrameReader reader_;
+  /// Frames that the reader has passed since it was sent somewhere, by Sensor; nothing: none. The
+  /// one of the target's stream begins before the target.
+  std::array<std::optional<std::uint64_t>, 2> passed_;
+  std::optional<Receipt> receipt_;  ///< The newest.
+  Wanted wanted_;                   ///< By the newest receipt.
+  SteadyTime next_look_{};          ///< At the receipt.
+  SteadyTime retry_at_{};           ///< The file has not got what is wanted.
+  bool reported_ = false;
+  bool unreadable_reported_ = false;
+  SteadyTime progress_at_{};  ///< Since the source has ended.
+  std::uint64_t lacked_ = 0;  ///< At that time.
+  bool is_ending_ = false;
+  std::atomic<bool> source_ended_{false};
+  std::atomic<bool> settled_{false};
+  std::atomic<std::uint64_t> lacking_{0};
+  std::atomic<std::uint64_t> arrived_{0};
+};
+
+}  // namespace isotherm

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/base/host_name.h"
+#include "common/base/mutex.h"
+#include "common/concurrency/latest_value.h"
+#include "edge/publisher/edge_endpoints.h"
+#include "edge/publisher/ground_watch.h"
+#include "edge/publisher/outgoing_stream.h"
+#include "edge/publisher/publisher.h"
+#include "edge/publisher/stop_budget.h"
+
+namespace isotherm {
+
+/// The publisher over DDS; what its methods promise is said there.
+class DdsPublisher final : public Publisher {
+ public:
+  DdsPublisher(const Clock& clock, const PublisherOptions& options)
+      : clock_(clock),
+        options_(options),
+        own_hello_{
+            .role = Role::kEdge, .software_version = options.software_version, .host = HostName()},
+        policy_(options.policy),
+        depth_(MakeStream(options)),
+        thermal_(MakeStream(options)),
+        grounds_(options.edge_id) {}
+
+  Status Open(const Participant& participant);
+
+  void Run(std::stop_token stop, const PublisherHandlers& handlers) override;
+  bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
+  Status BeginSession(const RigDescription& rig) override;
+  Status Announce(const RigDescription& rig) override;
+  Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
+    return PublishFrame(frame, &ends_.depth, &depth_, stop);
+  }
+  Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
+    return PublishFrame(frame, &ends_.thermal, &thermal_, stop);
+  }
+  Result<bool> Backfill(const EncodedDepthFrame& frame) override {
+    return BackfillFrame(frame, &ends_.backfill_depth, &depth_);
+  }
+  Result<bool> Backfill(const EncodedThermalFrame& frame) override {
+    return BackfillFrame(frame, &ends_.backfill_thermal, &thermal_);
+  }
+  Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) override;
+  Status Publish(EdgeStatus status) override;
+  Status Answer(const CommandResult& result) override {
+    return ends_.result.Write(options_.edge_id, result);
+  }
+  bool Drain(Nanoseconds timeout) override;
+  void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
+  PublisherStats stats() const override;
+  std::optional<Receipt> receipt() const override { return receipt_.Get(); }
+
+ private:
+  static OutgoingStream MakeStream(const PublisherOptions& options) {
+    return {static_cast<std::size_t>(options.flow_window_frames), options.flow_timeout};
+  }
+
+  template <typename Frame>
+  Status PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
+                      const std::stop_token& stop);
+  template <typename Frame>
+  Result<bool> BackfillFrame(const Frame& frame, Writer<Backfilled<Frame>>* writer,
+                             OutgoingStream* stream);
+  template <typename Frame>
+  void WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stream,
+                   const std::stop_token& stop);
+  /// After stop was requested.
+  bool HasTimeLeft() {
+    MutexLock lock(mutex_);
+    return stop_budget_.MayWrite(clock_.SteadyNow());
+  }
+  /// Messages for other rigs share the topics.
+  bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
+  void TakeReceipts();
+  void OnReceipt(const Received<Receipt>& received) REQUIRES(receipts_mutex_);
+  void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
+  void OnPeer(const Received<Hello>& peer);
+  void LookForGround();
+  /// Says why the ground's word about this session cannot be true.
+  std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
+  std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
+      REQUIRES(mutex_);
+  std::optional<std::uint64_t> session() const {
+    MutexLock lock(mutex_);
+    return session_;
+  }
+  bool IsGroundReady() const;
+  /// Returns whether the ground that follows this rig, or may, reads what `writer` writes: an
+  /// onlooker is not waited for.
+  template <typename Frame>
+  bool IsAwaited(const Writer<Frame>& writer) const REQUIRES(mutex_) {
+    return grounds_.IsAwaited([&](PeerHandle peer) { return writer.Reaches(peer); },
+                              clock_.SteadyNow());
+  }
+  /// Returns whether IsAwaited, or whether a reader has just come that may be the ground's.
+  template <typename Frame>
+  bool MayBeAwaited(const Writer<Frame>& writer, OutgoingStream* stream, SteadyTime now) const
+      REQUIRES(mutex_) {
+    if (grounds_.IsRefused(now)) return false;
+    return stream->HasNewReader(writer.matched_readers(), now) || IsAwaited(writer);
+  }
+  bool HasNobodyToWaitFor() const;
+  bool IsHandled() const;
+
+  const Clock& clock_;
+  const PublisherOptions options_;
+  const Hello own_hello_;
+  RefusalCounter refusals_;
+  EdgeEndpoints ends_;
+  // Run() takes receipts, and so does Drain(), before or after Run().
+  Mutex receipts_mutex_;
+  LatestValue<Receipt> receipt_;
+  std::atomic<PublishPolicy> policy_;
+
+  mutable Mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<std::uint64_t> session_ GUARDED_BY(mutex_);
+  OutgoingStream depth_ GUARDED_BY(mutex_);
+  OutgoingStream thermal_ GUARDED_BY(mutex_);
+  std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
+  std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
+  std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);  // Not sent yet.
+  GroundWatch grounds_ GUARDED_BY(mutex_);
+  StopBudget stop_budget_ GUARDED_BY(mutex_);
+};
+
+}  // namespace isotherm
