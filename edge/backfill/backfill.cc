@@ -67,6 +67,7 @@ void Backfill::Run(const std::stop_token& stop) {
 }
 
 bool Backfill::Step() {
+  if (settled_) return false;
   const SteadyTime now = parts_.clock.SteadyNow();
   if (now >= next_look_) {
     next_look_ = now + kLookInterval;
@@ -74,7 +75,7 @@ bool Backfill::Step() {
       TakeReceipt(*receipt, now);
     Settle(now);
   }
-  if (!receipt_ || settled_ || now < retry_at_ || !window_.MaySend(now)) return false;
+  if (!receipt_ || now < retry_at_ || !window_.MaySend(now)) return false;
   return SendNext(now);
 }
 
@@ -82,19 +83,33 @@ void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
   receipt_ = receipt;
   std::uint64_t lacking = 0;
   // Once nothing more is captured, what does not come by itself will not come.
-  const bool is_stalled = is_ending_ && now - progress_at_ > kStalled;
+  is_stalled_ = is_stalled_ || (is_ending_ && now - progress_at_ > kStalled);
   for (const auto& [sensor, stream] : {std::pair(Sensor::kDepth, &receipt_->depth),
                                        std::pair(Sensor::kThermal, &receipt_->thermal)}) {
     std::vector<FrameRange> missing = stream->holes;
     // What is behind the newest that arrived may be on its way, or wait on this side.
     missing.push_back({stream->next, std::numeric_limits<std::uint64_t>::max()});
     lacking += Frames(parts_.recorded.Of(sensor, missing));
-    window_.OnReceipt(sensor, stream->holes, now);
+    NoteLost(sensor, window_.OnReceipt(sensor, stream->holes, now));
     wanted_[static_cast<std::size_t>(sensor)] =
-        parts_.recorded.Of(sensor, is_stalled ? missing : GivenUp(*stream));
+        parts_.recorded.Of(sensor, is_stalled_ ? missing : GivenUp(*stream));
   }
   lacking_ = lacking;
   arrived_ = window_.confirmed();
+}
+
+void Backfill::NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames) {
+  // The ground may refuse a frame each time; links that lose a third of all lose none so often.
+  constexpr int kMaxTries = 20;
+  // More is a link that loses nearly all, for which each frame may be tried anew.
+  constexpr std::size_t kMaxRemembered = 4096;
+  std::map<std::uint64_t, int>& tries = tries_[static_cast<std::size_t>(sensor)];
+  if (tries.size() > kMaxRemembered) tries.clear();
+  for (const std::uint64_t number : frames) {
+    if (++tries[number] < kMaxTries) continue;
+    parts_.recorded.Forget(sensor, {number, number});
+    tries.erase(number);
+  }
 }
 
 void Backfill::Settle(SteadyTime now) {
@@ -103,10 +118,11 @@ void Backfill::Settle(SteadyTime now) {
   if (!std::exchange(is_ending_, true) || lacking < lacked_) progress_at_ = now;
   lacked_ = lacking;
   const PublisherStats link = parts_.publisher.stats();
-  // A ground that never said anything is not waited for, one that was cut off is.
-  if (receipt_ && options_.waits_for_ground && !link.ground_present) progress_at_ = now;
-  if (receipt_ && lacking > 0 && now - progress_at_ < options_.patience) return;
-  if (receipt_ && lacking > 0) {
+  // One that never said anything is not waited for; it may be about to, if it is there.
+  const bool is_awaited = receipt_ ? lacking > 0 : link.takes_backfill;
+  if (is_awaited && options_.waits_for_ground && !link.ground_present) progress_at_ = now;
+  if (is_awaited && now - progress_at_ < options_.patience) return;
+  if (is_awaited) {
     LOG(Edge, Warning) << "the ground does not take what it lacks any more, frames=" << lacking
                        << "; the recording has them (isotherm merge-recordings)";
   }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -38,12 +39,16 @@ struct BackfillParts {
 
 /// Sends from the recording what the ground lacks: frames that an outage or a narrow link has cost,
 /// and those before a ground that came late. The ground's receipts say which these are. What is
-/// being captured comes first. Run() belongs to a thread of its own; the rest is thread-safe.
+/// being captured comes first. Run() and Step() belong to a thread of their own; the rest is
+/// thread-safe.
 class Backfill {
  public:
   Backfill(const BackfillOptions& options, const BackfillParts& parts);
 
+  /// Calls Step again and again until stop is requested or all is settled.
   void Run(const std::stop_token& stop);
+  /// Does what is due by now. Returns whether a frame was sent.
+  bool Step();
 
   /// The source has ended, and all its frames are recorded and published, or dropped.
   void NoteEnd() { source_ended_ = true; }
@@ -60,9 +65,9 @@ class Backfill {
   /// What is wanted of each stream, by Sensor; ascending.
   using Wanted = std::array<std::vector<FrameRange>, 2>;
 
-  /// Does what is due; returns whether something was sent.
-  bool Step();
   void TakeReceipt(const Receipt& receipt, SteadyTime now);
+  /// These were sent and got lost; what gets lost again and again is not sent any more.
+  void NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames);
   /// Says whether the end has come, from the newest receipt.
   void Settle(SteadyTime now);
   /// Sends the next frame that is wanted; false if there is none, or none can be read by now.
@@ -91,15 +96,17 @@ class Backfill {
   /// Frames that the reader has passed since it was sent somewhere, by Sensor; nothing: none. The
   /// one of the target's stream begins before the target.
   std::array<std::optional<std::uint64_t>, 2> passed_;
-  std::optional<Receipt> receipt_;  ///< The newest.
-  Wanted wanted_;                   ///< By the newest receipt.
-  SteadyTime next_look_{};          ///< At the receipt.
-  SteadyTime retry_at_{};           ///< The file has not got what is wanted.
+  std::optional<Receipt> receipt_;                     ///< The newest.
+  std::array<std::map<std::uint64_t, int>, 2> tries_;  ///< Of frames that got lost, by Sensor.
+  Wanted wanted_;                                      ///< By the newest receipt.
+  SteadyTime next_look_{};                             ///< At the receipt.
+  SteadyTime retry_at_{};                              ///< The file has not got what is wanted.
   bool reported_ = false;
   bool unreadable_reported_ = false;
   SteadyTime progress_at_{};  ///< Since the source has ended.
   std::uint64_t lacked_ = 0;  ///< At that time.
   bool is_ending_ = false;
+  bool is_stalled_ = false;  ///< What was published and has not arrived will not come by itself.
   std::atomic<bool> source_ended_{false};
   std::atomic<bool> settled_{false};
   std::atomic<std::uint64_t> lacking_{0};

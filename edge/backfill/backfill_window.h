@@ -21,6 +21,8 @@ class BackfillWindow {
  public:
   /// Frames under way at the start. Not tuned.
   static constexpr double kFirstLimit = 4.0;
+  /// With one that got lost, another shows that the link works.
+  static constexpr double kMinLimit = 2.0;
   /// A frame that the ground still lacks after this long was lost, and is sent again. The ground
   /// sends five receipts a second. Smaller: frames are sent twice over a slow link. Not tuned.
   static constexpr Nanoseconds kLostAfter = std::chrono::seconds(2);
@@ -29,25 +31,36 @@ class BackfillWindow {
   BackfillWindow(std::size_t max_frames, double frames_per_s)
       : max_frames_(max_frames), frames_per_s_(frames_per_s) {}
 
-  /// The ground lacks the frames in `holes`, ascending, of a stream.
-  void OnReceipt(Sensor sensor, const std::vector<FrameRange>& holes, SteadyTime now) {
+  /// The ground lacks the frames in `holes`, ascending, of a stream. Returns which of those under
+  /// way got lost.
+  std::vector<std::uint64_t> OnReceipt(Sensor sensor, const std::vector<FrameRange>& holes,
+                                       SteadyTime now) {
     const bool was_full = IsFull();
-    std::size_t confirmed = 0, lost = 0;
+    // The middleware keeps the order of a topic: what was sent before a frame that is there, and is
+    // not, got lost.
+    SteadyTime newest{};
+    for (const auto& [number, sent] : UnderWay(sensor)) {
+      if (!IsIn(number, holes)) newest = std::max(newest, sent);
+    }
+    std::size_t confirmed = 0;
+    std::vector<std::uint64_t> lost;
     std::erase_if(UnderWay(sensor), [&](const auto& frame) {
       const bool is_missing = IsIn(frame.first, holes);
-      const bool is_lost = is_missing && now - frame.second >= kLostAfter;
+      const bool is_lost =
+          is_missing && (frame.second < newest || now - frame.second >= kLostAfter);
       confirmed += is_missing ? 0 : 1;
-      lost += is_lost ? 1 : 0;
+      if (is_lost) lost.push_back(frame.first);
       return !is_missing || is_lost;
     });
     confirmed_ += confirmed;
     // As TCP does: only a window that was used up is too small.
-    if (was_full && lost == 0) limit_ += static_cast<double>(confirmed);
-    if (lost > 0) limit_ /= 2.0;
-    limit_ = std::clamp(limit_, 1.0, static_cast<double>(max_frames_));
+    if (was_full && lost.empty()) limit_ += static_cast<double>(confirmed);
+    if (!lost.empty()) limit_ /= 2.0;
+    limit_ = std::clamp(limit_, kMinLimit, static_cast<double>(max_frames_));
+    return lost;
   }
   /// What is live has to wait: the link is full. To be called at most ten times a second.
-  void OnLiveBehind() { limit_ = std::max(1.0, limit_ / 2.0); }
+  void OnLiveBehind() { limit_ = std::max(kMinLimit, limit_ / 2.0); }
   void OnSent(Sensor sensor, std::uint64_t number, SteadyTime now) {
     UnderWay(sensor)[number] = now;
     // Time that was not used is not made up for.

@@ -87,5 +87,20 @@ TEST_F(FrameCountersTest, FramesThatMoveOnMeanwhileAreNeverFewerThanNone) {
   }
 }
 
+TEST_F(FrameCountersTest, WhatIsPublishedAfterAllIsNoLongerDropped) {
+  counters_.Count(Sensor::kDepth, FrameFate::kCaptured, 4);
+  counters_.Count(Sensor::kDepth, FrameFate::kPublished);
+  counters_.Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 2);
+  counters_.Count(Sensor::kDepth, FrameFate::kPublishFailed);
+  for (std::uint64_t published = 2; published <= 4; ++published) {
+    counters_.CountPublishedAfterAll(Sensor::kDepth);
+    EXPECT_EQ(Depth().published, published);
+    EXPECT_EQ(Depth().OnTheWayToGround(), 0);
+  }
+  EXPECT_EQ(Depth().publish_queue_full + Depth().publish_failed, 0U);
+  counters_.CountPublishedAfterAll(Sensor::kDepth);
+  EXPECT_EQ(Depth().published, 4U) << "no more than were dropped";
+}
+
 }  // namespace
 }  // namespace isotherm

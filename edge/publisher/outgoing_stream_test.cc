@@ -41,6 +41,22 @@ TEST_F(OutgoingStreamTest, AFrameThatFailedIsNotPublishedAndTakesNoRoom) {
   EXPECT_FALSE(stream_.window().HasRoom()) << "two are under way";
 }
 
+TEST_F(OutgoingStreamTest, AFrameFromTheRecordingCountsOnceAndMayBeReceivedAgain) {
+  for (const std::uint64_t number : {0, 3}) Publish(number);
+  stream_.sent().NoteAgain();
+  EXPECT_TRUE(stream_.OnBackfilled(1)) << "it had been dropped before the link";
+  EXPECT_EQ(stream_.counts().published, 3U);
+  stream_.sent().NoteAgain();
+  EXPECT_FALSE(stream_.OnBackfilled(3)) << "the link had lost it";
+  EXPECT_EQ(stream_.counts().published, 3U);
+  EXPECT_EQ(stream_.counts().next_frame_number, 4U);
+  EXPECT_EQ(Check(4, 3), std::nullopt);
+  EXPECT_EQ(Check(5, 3), RefusalCause::kImpossibleNumber) << "nobody sent it";
+  stream_.BeginSession();
+  stream_.sent().NoteAgain();
+  EXPECT_TRUE(stream_.OnBackfilled(3));
+}
+
 TEST_F(OutgoingStreamTest, ANewSessionKnowsNothingOfTheOneBefore) {
   for (const std::uint64_t number : {0, 1, 2}) Publish(number);
   stream_.OnFailed();

@@ -246,5 +246,27 @@ TEST_F(RecordingLoopTest, WithoutARecordingTheFolderIsThereForTheResults) {
   EXPECT_TRUE(tracker_->Get().path.empty());
 }
 
+TEST_F(RecordingLoopTest, WhatComesLateHasAFileOfItsOwn) {
+  Run();
+  Start();
+  Depths(4);
+  for (const std::uint64_t number : {101, 102, 103}) {
+    auto frame = std::make_shared<EncodedDepthFrame>(testing::MakeDepth(number, kScanStart - 10s));
+    queue_.Push(ReceivedDepth{nullptr, std::move(frame), clock_.Now(), {}, /*is_late=*/true});
+  }
+  Depths(2);
+  End();
+  const RecordingProgress progress = tracker_->Get();
+  EXPECT_EQ(progress.depth_frames, 9U);
+  EXPECT_EQ(progress.late_frames, 3U);
+  ASSERT_THAT(progress.late_files, ElementsAre(Folder(kSession) / "scan-late.mcap"));
+  EXPECT_THAT(progress.files, ElementsAre(Folder(kSession) / "scan.mcap"));
+  EXPECT_THAT(NumbersIn(progress.late_files.front()), ElementsAre(101, 102, 103));
+  EXPECT_THAT(NumbersIn(progress.files.front()), ElementsAre(0, 1, 2, 3, 4, 5));
+  const auto reader = RecordingReader::Open(progress.late_files.front());
+  ASSERT_TRUE(reader);
+  EXPECT_TRUE((*reader)->ReadRig().has_value()) << "each file has the whole beginning";
+}
+
 }  // namespace
 }  // namespace isotherm

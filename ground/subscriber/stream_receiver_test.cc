@@ -195,6 +195,21 @@ TEST_F(StreamReceiverTest, F23ARealJumpIsFollowedWithoutLoss) {
   EXPECT_EQ(refusals_.total(), 0U);
 }
 
+TEST_F(StreamReceiverTest, AFrameThatFillsAHoleDoesNotContradictAJump) {
+  Add(At(1, 0, 0ms));
+  Add(At(1, 10, 400ms));
+  now_ += 1s;
+  receiver_.DeliverDue(now_);
+  EXPECT_FALSE(Add(At(1, 5'600'000, 440ms)));
+  EXPECT_TRUE(Add(At(1, 4, 160ms)));  // From the rig's recording.
+  EXPECT_FALSE(Add(At(1, 5'600'001, 480ms)));
+  EXPECT_TRUE(Add(At(1, 5'600'002, 520ms)));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 10, 5'600'000, 5'600'001, 5'600'002));
+  EXPECT_THAT(Numbers(late_), ElementsAre(4));
+  EXPECT_TRUE(late_.front().is_late);
+  EXPECT_EQ(refusals_.total(), 0U);
+}
+
 TEST_F(StreamReceiverTest, F23AWildFirstNumberDoesNotMakeAllOthersLate) {
   Add(At(1, 1ULL << 39U, 0ms));
   for (std::uint64_t i = 0; i < 10; ++i) Add(At(1, i, (i + 1) * 40ms));

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <optional>
@@ -96,23 +97,45 @@ class LinkOutageTest : public TwoHostsTest {
                         << "T_thermal_depth { tx: 0.05 ty: 0 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 }\n";
   }
 
-  /// Starts both daemons; a scan of `seconds` is played. Returns when frames have arrived.
-  void Start(int seconds, const std::string& edge_profile, const std::string& ground_profile) {
+  void StartGround(const std::string& profile) {
     std::vector<std::string> arguments = {"--output", results_};
     const std::vector<std::string> quick = QuickModel();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
-    ground_process_.emplace(On(ground_, ground_profile, GroundService(), arguments));
+    ground_process_.emplace(On(ground_, profile, GroundService(), arguments));
     ASSERT_TRUE(ground().WaitForOutput("ready", kPatience)) << ground().output();
-    // The small scan is a second long. At its end the edge waits until all is confirmed.
-    edge_process_.emplace(
-        On(edge_, edge_profile, EdgeDaemon(),
-           {"--recording", scan_, "--rig", rig_, "--record", copy_, "--wait-for-ground",
-            "--exit-at-end", "--set", "source.loops=" + std::to_string(seconds), "--set",
-            "link.expert.linger_s=30"}));
+  }
+  /// Plays a scan of `seconds`: the small scan is a second long. At its end the edge waits until
+  /// all is confirmed.
+  void StartEdge(int seconds, const std::string& profile, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--recording",
+                                          scan_,
+                                          "--rig",
+                                          rig_,
+                                          "--record",
+                                          copy_,
+                                          "--exit-at-end",
+                                          "--set",
+                                          "source.loops=" + std::to_string(seconds),
+                                          "--set",
+                                          "link.expert.linger_s=30"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    edge_process_.emplace(On(edge_, profile, EdgeDaemon(), std::move(arguments)));
+  }
+  /// Starts both daemons. Returns when frames have arrived.
+  void Start(int seconds, const std::string& edge_profile, const std::string& ground_profile,
+             std::vector<std::string> more = {}) {
+    ASSERT_NO_FATAL_FAILURE(StartGround(ground_profile));
+    more.emplace_back("--wait-for-ground");
+    StartEdge(seconds, edge_profile, more);
     ASSERT_TRUE(ground().WaitForOutput("scan started", kPatience)) << Said();
     ASSERT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
   }
-  void Start(int seconds) { Start(seconds, LanProfile(edge_), LanProfile(ground_)); }
+  void Start(int seconds, std::vector<std::string> more = {}) {
+    Start(seconds, LanProfile(edge_), LanProfile(ground_), std::move(more));
+  }
+  static std::vector<std::string> WithoutBackfill() {
+    return {"--set", "link.expert.backfill_hz=0"};
+  }
 
   /// Waits until `recording` has so much more of the scan.
   bool HasMore(const std::filesystem::path& recording, Seconds more) const {
@@ -144,8 +167,17 @@ class LinkOutageTest : public TwoHostsTest {
 
   /// Waits until the scan is over and ends both. Reads what became of the scan.
   Outcome End() {
+    return EndAfter([] {});
+  }
+  /// The same once the ground has brought in what came late.
+  Outcome EndCompleted() {
+    return EndAfter(
+        [this] { EXPECT_TRUE(ground().WaitForOutput("complete ", kPatience)) << Said(); });
+  }
+  Outcome EndAfter(const std::function<void()>& wait) {
     EXPECT_EQ(edge().WaitForExit(kPatience), 0) << edge().output();
     EXPECT_TRUE(ground().WaitForOutput("scan ended", kPatience)) << ground().output();
+    wait();
     ground().Signal(SIGTERM);
     EXPECT_EQ(ground().WaitForExit(kPatience), 0) << ground().output();
     EXPECT_EQ(Count(ground().output(), "scan started"), 1) << "another session";
@@ -230,7 +262,7 @@ class LinkOutageTest : public TwoHostsTest {
   Process& ground() { return *ground_process_; }
 
   const std::filesystem::path rig_ = folder_.path() / "rig.textproto";
-  const std::filesystem::path results_ = folder_.path() / "ground";
+  std::filesystem::path results_ = folder_.path() / "ground";
   std::optional<Process> ground_process_;
   std::optional<Process> edge_process_;
 };
@@ -273,7 +305,7 @@ TEST_F(LinkOutageTest, F24AnOutageOfASecondLosesNothing) {
   ExpectNothingIsLost(outcome);
 }
 
-TEST_F(LinkOutageTest, F25F26ALongOutageCostsOnlyFramesOfItsTimeAndTheScanGoesOn) {
+TEST_F(LinkOutageTest, F25F26ALongOutageCostsNoFrameInTheEndAndTheScanGoesOn) {
   WriteScan(4);  // Enough for what is gathered to be seen.
   ASSERT_NO_FATAL_FAILURE(Start(30));
   const MemoryGrowth edge_memory(edge().pid());
@@ -304,12 +336,49 @@ TEST_F(LinkOutageTest, F25F26ALongOutageCostsOnlyFramesOfItsTimeAndTheScanGoesOn
             << " s\n";
   EXPECT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
   EXPECT_FALSE(edge().HasEnded(Seconds(0))) << "the scan was too short";
-  const Outcome outcome = End();
+  const Outcome outcome = EndCompleted();
   ExpectEachFrameAccountedFor(outcome);
-  ExpectLostBetween(outcome, down, back);
+  ExpectNothingIsLost(outcome);
+  EXPECT_FALSE(std::filesystem::exists(GroundFolder() / "scan-late.mcap"));
+  for (const auto& [sensor, name] : kStreams) {
+    EXPECT_GT(outcome.Number(name, "late"), 100) << "there was no outage";
+    const double fed = NumberAt(outcome.stats, {"frames", name, "in"});
+    EXPECT_EQ(fed, outcome.Number(name, "received")) << "the results were made of all";
+  }
   // In each direction something fails ten times a second and more (F64).
   EXPECT_LE(Count(edge().output(), "Dds: "), 10) << edge().output();
   EXPECT_LE(Count(ground().output(), "Dds: "), 10) << ground().output();
+}
+
+TEST_F(LinkOutageTest, F25WithoutBackfillAnOutageCostsOnlyFramesOfItsTime) {
+  ASSERT_NO_FATAL_FAILURE(Start(14, WithoutBackfill()));
+  const CaptureTime down = WallClock();
+  Set(edge_, "down");
+  Set(ground_, "down");
+  EXPECT_TRUE(HasMore(copy_, Seconds(6))) << Said();
+  Set(edge_, "up");
+  Set(ground_, "up");
+  ASSERT_TRUE(ground().WaitForOutput("rig found", kPatience, 2)) << Said();
+  const CaptureTime back = WallClock();
+  const Outcome outcome = End();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectLostBetween(outcome, down, back);
+}
+
+TEST_F(LinkOutageTest, F32F35AGroundThatComesLateAndOneThatIsStartedAgainGetTheWholeScan) {
+  StartEdge(12, LanProfile(edge_), {});
+  ASSERT_TRUE(edge().WaitForOutput("recording to", kPatience)) << edge().output();
+  EXPECT_TRUE(HasMore(copy_, Seconds(3))) << edge().output();
+  ASSERT_NO_FATAL_FAILURE(StartGround(LanProfile(ground_)));
+  ASSERT_TRUE(ground().WaitForOutput("scan started", kPatience)) << Said();
+  EXPECT_TRUE(HasMore(copy_, Seconds(2))) << edge().output();
+  ground().Signal(SIGKILL);
+  ground().WaitForExit(kPatience);
+  results_ = folder_.path() / "second";
+  ASSERT_NO_FATAL_FAILURE(StartGround(LanProfile(ground_)));
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
 }
 
 TEST_F(LinkOutageTest, F27ATenthOfAllPacketsLostOnALocalNetworkCostsNoFrame) {
@@ -332,8 +401,18 @@ TEST_F(LinkOutageTest, F27AFifthOfAllPacketsLostOnARadioCostsNoFrame) {
   ExpectNothingIsLost(outcome);
 }
 
-TEST_F(LinkOutageTest, F28WhatANarrowLinkCannotCarryIsDroppedByTheRigAndCounted) {
-  ASSERT_NO_FATAL_FAILURE(Start(14));
+TEST_F(LinkOutageTest, F28WhatANarrowLinkCannotCarryComesLater) {
+  ASSERT_NO_FATAL_FAILURE(Start(10));
+  if (!Narrow(edge_, "400kbit")) GTEST_SKIP() << "this kernel limits no rate";
+  EXPECT_TRUE(HasMore(copy_, Seconds(6))) << Said();
+  Widen(edge_);
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+}
+
+TEST_F(LinkOutageTest, F28WithoutBackfillWhatANarrowLinkCannotCarryIsDroppedByTheRigAndCounted) {
+  ASSERT_NO_FATAL_FAILURE(Start(14, WithoutBackfill()));
   // A third of what the small scan takes.
   if (!Narrow(edge_, "400kbit")) GTEST_SKIP() << "this kernel limits no rate";
   EXPECT_TRUE(HasMore(copy_, Seconds(9))) << Said();

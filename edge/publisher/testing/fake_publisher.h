@@ -42,6 +42,8 @@ class FakePublisher final : public Publisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return Take(frame, &thermal_, stop);
   }
+  Result<bool> Backfill(const EncodedDepthFrame&) override { return false; }
+  Result<bool> Backfill(const EncodedThermalFrame&) override { return false; }
   Status Publish(const ExternalOdometrySample& sample, std::stop_token) override {
     MutexLock lock(mutex_);
     if (broken_) return Unavailable("no link");
