@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/base/sync_folder.h"
 
 namespace isotherm {
 namespace {
@@ -35,15 +36,6 @@ std::string Advice(int error) {
     default:
       return "";
   }
-}
-
-/// Makes the rename itself durable. Some file systems refuse it; the content is safe either way.
-void SyncFolder(const std::filesystem::path& folder) {
-  const int descriptor =
-      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "common/base/sync_folder.h"
+
 namespace isotherm {
 
 namespace fs = std::filesystem;
@@ -45,6 +47,7 @@ PartialFile::~PartialFile() {
 Status PartialFile::Commit() const {
   std::error_code error;
   fs::rename(path_, target_, error);
+  if (!error) SyncFolder(target_.parent_path());
   if (!error) return OkStatus();
   return IoError(fmt::format("{}: cannot be created: {}", target_.string(), error.message()));
 }

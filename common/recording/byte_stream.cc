@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "common/base/sync_folder.h"
+
 namespace isotherm {
 namespace {
 
@@ -103,12 +105,6 @@ class FileSource final : public ByteSource {
   const std::uint64_t size_;
 };
 
-/// The new directory entry must survive a power cut as well. Best effort: some file systems refuse.
-void SyncDirectory(const std::filesystem::path& directory) {
-  const FileDescriptor fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.get() >= 0) static_cast<void>(::fsync(fd.get()));
-}
-
 }  // namespace
 
 Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path) {
@@ -126,7 +122,7 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
   const int flags = O_WRONLY | O_CLOEXEC | (device ? 0 : O_CREAT | O_EXCL);
   FileDescriptor fd(::open(path.c_str(), flags, 0644));
   if (fd.get() < 0) return Err(FromErrno(errno, "create", path));
-  if (!device) SyncDirectory(directory);
+  if (!device) SyncFolder(directory);
   return std::make_unique<FileSink>(std::move(fd), path);
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/base/log.h"
 #include "common/base/pause.h"
+#include "common/base/status.h"
 
 namespace isotherm {
 namespace {
@@ -17,8 +18,16 @@ using namespace std::chrono_literals;
 /// Receipts come five times a second, and with each eighth frame.
 constexpr Nanoseconds kLookInterval = 20ms;
 constexpr Nanoseconds kStalled = 1s;
-/// A chunk of the recording is written twice a second; before, nothing of it can be read.
-constexpr Nanoseconds kRetryInterval = 500ms;
+constexpr Nanoseconds kSilent = 1s;
+/// A stream of which nothing was published for this long has nothing under way.
+constexpr Nanoseconds kStopped = 1s;
+/// Frames that are read for one that is wanted before there is time for other things.
+constexpr int kFramesPerStep = 64;
+/// A file that cannot be opened so often in a row is given up.
+constexpr int kMaxFailures = 10;
+/// A chunk of the recording is written twice a second; before, nothing of it can be read. A file
+/// that grows is opened anew each time, which takes the longer the larger it is.
+constexpr Nanoseconds kRetryInterval = 1s;
 constexpr Nanoseconds kBehindInterval = 100ms;
 /// The reader goes on reading up to this far before what is wanted, rather than open the file anew.
 constexpr Nanoseconds kReadThrough = 3s;
@@ -45,6 +54,16 @@ std::vector<FrameRange> GivenUp(const StreamReceipt& receipt) {
   return given_up;
 }
 
+/// Returns what of the frames under way cannot be said to have arrived; `missing` are the holes and
+/// what is behind them.
+std::vector<FrameRange> NotConfirmed(const StreamReceipt& receipt,
+                                     std::vector<FrameRange> missing) {
+  // Of more holes only the newest are told.
+  const bool has_more = receipt.holes.size() >= kMaxHoles && receipt.holes.front().first > 0;
+  if (has_more) missing.insert(missing.begin(), {0, receipt.holes.front().first - 1});
+  return missing;
+}
+
 const FrameHeader& HeaderOf(const RecordedFrameReader::Frame& frame) {
   return std::visit([](const auto& content) -> const FrameHeader& { return content.header; },
                     frame);
@@ -61,7 +80,10 @@ Backfill::Backfill(const BackfillOptions& options, const BackfillParts& parts)
 
 void Backfill::Run(const std::stop_token& stop) {
   while (!stop.stop_requested() && !settled_) {
-    if (!Step()) Pause(stop, kLookInterval / 4);
+    progress_.Busy(parts_.clock.SteadyNow());
+    const bool sent = Step();
+    progress_.Idle();
+    if (!sent) Pause(stop, kLookInterval / 4);
   }
   reader_.Close();
 }
@@ -71,9 +93,11 @@ bool Backfill::Step() {
   const SteadyTime now = parts_.clock.SteadyNow();
   if (now >= next_look_) {
     next_look_ = now + kLookInterval;
+    // Before the receipt: what was captured last is then known when it is counted what is lacking.
+    const bool source_has_ended = source_ended_;
     if (const std::optional<Receipt> receipt = parts_.publisher.receipt())
       TakeReceipt(*receipt, now);
-    Settle(now);
+    if (source_has_ended) Settle(now);
   }
   if (!receipt_ || now < retry_at_ || !window_.MaySend(now)) return false;
   return SendNext(now);
@@ -90,7 +114,7 @@ void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
     // What is behind the newest that arrived may be on its way, or wait on this side.
     missing.push_back({stream->next, std::numeric_limits<std::uint64_t>::max()});
     lacking += Frames(parts_.recorded.Of(sensor, missing));
-    NoteLost(sensor, window_.OnReceipt(sensor, stream->holes, now));
+    NoteLost(sensor, window_.OnReceipt(sensor, NotConfirmed(*stream, missing), now));
     wanted_[static_cast<std::size_t>(sensor)] =
         parts_.recorded.Of(sensor, is_stalled_ ? missing : GivenUp(*stream));
   }
@@ -113,16 +137,18 @@ void Backfill::NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames)
 }
 
 void Backfill::Settle(SteadyTime now) {
-  if (!source_ended_) return;
   const std::uint64_t lacking = lacking_;
   if (!std::exchange(is_ending_, true) || lacking < lacked_) progress_at_ = now;
   lacked_ = lacking;
   const PublisherStats link = parts_.publisher.stats();
   // One that never said anything is not waited for; it may be about to, if it is there.
   const bool is_awaited = receipt_ ? lacking > 0 : link.takes_backfill;
-  if (is_awaited && options_.waits_for_ground && !link.ground_present) progress_at_ = now;
+  // Patience is with a ground that is heard, and takes nothing. The middleware itself notices only
+  // after ten seconds that it is not.
+  const bool is_cut_off = receipt_ && link.receipt_age.value_or(kSilent) >= kSilent;
+  if (is_awaited && options_.waits_for_ground && is_cut_off) progress_at_ = now;
   if (is_awaited && now - progress_at_ < options_.patience) return;
-  if (is_awaited) {
+  if (is_awaited && lacking > 0) {
     LOG(Edge, Warning) << "the ground does not take what it lacks any more, frames=" << lacking
                        << "; the recording has them (isotherm merge-recordings)";
   }
@@ -136,10 +162,18 @@ bool Backfill::IsWanted(Sensor sensor, std::uint64_t number) const {
 }
 
 std::optional<Backfill::Target> Backfill::FindTarget() const {
+  // What got lost and is wanted again is read when there is nothing ahead: going back takes time.
+  const std::optional<Target> ahead = FirstWanted(/*only_ahead=*/true);
+  return ahead ? ahead : FirstWanted(/*only_ahead=*/false);
+}
+
+std::optional<Backfill::Target> Backfill::FirstWanted(bool only_ahead) const {
   std::optional<Target> first;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const std::optional<std::uint64_t>& passed = passed_[static_cast<std::size_t>(sensor)];
+    if (only_ahead && !passed) continue;
     for (const FrameRange& range : wanted_[static_cast<std::size_t>(sensor)]) {
-      std::uint64_t number = range.first;
+      std::uint64_t number = only_ahead ? std::max(range.first, *passed + 1) : range.first;
       // No more are under way than the window holds.
       while (number <= range.last && window_.IsUnderWay(sensor, number)) ++number;
       if (number > range.last) continue;
@@ -159,13 +193,17 @@ bool Backfill::GoTo(const Target& target, SteadyTime now) {
   if (leads_there) return true;
   const Status gone = reader_.GoTo({target.place.file, target.place.time - kDisorder});
   if (!gone.ok()) {
-    if (!std::exchange(unreadable_reported_, true)) {
-      LOG(Edge, Warning) << "what the ground lacks cannot be read: " << gone.message();
-    }
-    parts_.recorded.ForgetRest(target.sensor, target.number, target.place.file);
     retry_at_ = now + kRetryInterval;
+    if (++failures_ < kMaxFailures) return false;
+    failures_ = 0;
+    LOG(Edge, Warning) << "what the ground lacks cannot be read and stays on the rig: "
+                       << gone.message();
+    // Of the newest file as well: the frames that follow are known again when they are recorded.
+    for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal})
+      parts_.recorded.ForgetAll(sensor, target.place.file);
     return false;
   }
+  failures_ = 0;
   passed_ = {};
   passed_[static_cast<std::size_t>(target.sensor)] =
       target.number - std::min<std::uint64_t>(target.number, 1);
@@ -188,7 +226,7 @@ void Backfill::NotePassed(Sensor sensor, std::uint64_t number) {
 bool Backfill::SendNext(SteadyTime now) {
   const std::optional<Target> target = FindTarget();
   if (!target || !MayDisturb(now) || !GoTo(*target, now)) return false;
-  while (true) {
+  for (int read = 0; read < kFramesPerStep; ++read) {
     const Result<std::optional<RecordedFrameReader::Frame>> frame = reader_.Next();
     if (!frame) continue;  // Damaged; the frames behind it are good.
     if (!*frame) {
@@ -205,16 +243,23 @@ bool Backfill::SendNext(SteadyTime now) {
     Send(**frame, now);
     return true;
   }
+  return false;  // Goes on from there.
+}
+
+bool Backfill::IsBehind(Sensor sensor, const StreamPublished& sent, const StreamReceipt& receipt,
+                        SteadyTime now) {
+  // A camera that was lost with frames under way holds nothing up.
+  auto& [next, since] = newest_published_[static_cast<std::size_t>(sensor)];
+  if (std::exchange(next, sent.next_frame_number) != sent.next_frame_number) since = now;
+  return now - since < kStopped && next > receipt.handled + kUsuallyUnderWay;
 }
 
 bool Backfill::MayDisturb(SteadyTime now) {
   const PublisherStats link = parts_.publisher.stats();
-  const auto is_behind = [](const StreamPublished& sent, const StreamReceipt& receipt) {
-    return sent.next_frame_number > receipt.handled + kUsuallyUnderWay;
-  };
   const bool live_is_behind =
-      !source_ended_ && (parts_.is_live_behind() || is_behind(link.depth, receipt_->depth) ||
-                         is_behind(link.thermal, receipt_->thermal));
+      !source_ended_ &&
+      (parts_.is_live_behind() || IsBehind(Sensor::kDepth, link.depth, receipt_->depth, now) ||
+       IsBehind(Sensor::kThermal, link.thermal, receipt_->thermal, now));
   if (!live_is_behind && link.takes_backfill) return true;
   window_.OnLiveBehind();
   retry_at_ = now + kBehindInterval;

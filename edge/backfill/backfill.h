@@ -2,15 +2,21 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
+#include "common/frame/frame.h"
 #include "common/messages/messages.h"
 #include "common/time/clock.h"
+#include "common/time/thread_progress.h"
+#include "common/time/time_types.h"
+#include "common/transport/qos.h"
 #include "edge/backfill/backfill_window.h"
 #include "edge/frame_counters/frame_counters.h"
 #include "edge/publisher/publisher.h"
@@ -21,9 +27,10 @@ namespace isotherm {
 
 /// Says how frames are sent again.
 struct BackfillOptions {
-  double frames_per_s = 200.0;  ///< At most, of both streams together.
-  Nanoseconds patience{};       ///< After the source has ended, without progress.
-  /// After the source has ended: a ground that is gone is waited for until it is back.
+  double frames_per_s = 200.0;  ///< No more are sent, of both streams together.
+  /// A ground that is heard and takes nothing is waited for no longer, once the source has ended.
+  Nanoseconds patience{};
+  /// A ground that is cut off is waited for until it is back, once the source has ended.
   bool waits_for_ground = false;
 };
 
@@ -59,16 +66,19 @@ class Backfill {
   std::uint64_t lacking() const { return lacking_; }
   /// Returns how many frames were sent from the recording and have arrived.
   std::uint64_t arrived() const { return arrived_; }
+  /// Returns for how long it has been at one piece of work, such as reading from the disk.
+  Nanoseconds AtItFor(SteadyTime now) const { return progress_.AtItFor(now); }
 
  private:
-  static constexpr std::size_t kMaxUnderWay = 28;  ///< Below the history of the topics (qos.h).
+  /// The history of a topic holds them all, whichever stream they are of.
+  static constexpr std::size_t kMaxUnderWay = kMaxFlowWindowFrames;
   /// What is wanted of each stream, by Sensor; ascending.
   using Wanted = std::array<std::vector<FrameRange>, 2>;
 
   void TakeReceipt(const Receipt& receipt, SteadyTime now);
   /// These were sent and got lost; what gets lost again and again is not sent any more.
   void NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames);
-  /// Says whether the end has come, from the newest receipt.
+  /// Says whether the end has come, by the newest receipt; the source has ended.
   void Settle(SteadyTime now);
   /// Sends the next frame that is wanted; false if there is none, or none can be read by now.
   bool SendNext(SteadyTime now);
@@ -81,8 +91,12 @@ class Backfill {
     std::uint64_t number = 0;
     RecordedFrames::Place place;
   };
-  /// Returns the one that is the first in the recording, of both streams.
+  /// Returns the one that is read next.
   std::optional<Target> FindTarget() const;
+  std::optional<Target> FirstWanted(bool only_ahead) const;
+  /// Returns whether more of a stream is published and not handled than is usual.
+  bool IsBehind(Sensor sensor, const StreamPublished& sent, const StreamReceipt& receipt,
+                SteadyTime now);
   /// Brings the reader before it. Returns whether it can be read by now.
   bool GoTo(const Target& target, SteadyTime now);
   /// The reader has come to this frame: those wanted before it that it did not meet are not there.
@@ -102,11 +116,14 @@ class Backfill {
   SteadyTime next_look_{};                             ///< At the receipt.
   SteadyTime retry_at_{};                              ///< The file has not got what is wanted.
   bool reported_ = false;
-  bool unreadable_reported_ = false;
+  int failures_ = 0;  ///< To open the file, in a row.
+  /// Tells of each stream what was published last, by Sensor, and since when.
+  std::array<std::pair<std::uint64_t, SteadyTime>, 2> newest_published_{};
   SteadyTime progress_at_{};  ///< Since the source has ended.
   std::uint64_t lacked_ = 0;  ///< At that time.
   bool is_ending_ = false;
   bool is_stalled_ = false;  ///< What was published and has not arrived will not come by itself.
+  ThreadProgress progress_;
   std::atomic<bool> source_ended_{false};
   std::atomic<bool> settled_{false};
   std::atomic<std::uint64_t> lacking_{0};

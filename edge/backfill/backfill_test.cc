@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <random>
-#include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "common/recording/recording.h"
 #include "common/testing/temporary_directory.h"
 #include "common/testing/test_seed.h"
+#include "edge/publisher/publisher.h"
 
 namespace isotherm {
 namespace {
@@ -33,7 +35,7 @@ class SimulatedLink final : public Publisher {
  public:
   SimulatedLink(const Clock& clock, std::uint64_t seed) : clock_(clock), random_(seed) {}
 
-  /// Sends a frame as it is captured; false if the link had no room for it.
+  /// Sends a frame as it is captured.
   void SendLive(Sensor sensor, std::uint64_t number) {
     next_published_[Index(sensor)] = number + 1;
     Carry(sensor, number);
@@ -55,7 +57,9 @@ class SimulatedLink final : public Publisher {
     receipt.session = kSession;
     receipt.depth = ReceiptOf(Sensor::kDepth);
     receipt.thermal = ReceiptOf(Sensor::kThermal);
-    if (receipt.depth.next + receipt.thermal.next > 0) receipt_ = receipt;
+    if (receipt.depth.next + receipt.thermal.next == 0) return;
+    receipt_ = receipt;
+    receipt_at_ = now;
   }
   /// The ground is started again, and knows nothing.
   void RestartGround() { has_ = std::array<FrameNumberSet, 2>(); }
@@ -84,7 +88,10 @@ class SimulatedLink final : public Publisher {
     PublisherStats stats;
     stats.depth.next_frame_number = next_published_[0];
     stats.thermal.next_frame_number = next_published_[1];
-    stats.ground_present = stats.takes_backfill = carries && ground_is_there;
+    if (receipt_) stats.receipt_age = clock_.SteadyNow() - receipt_at_;
+    // The middleware notices late that somebody is gone.
+    const bool is_noticed = !receipt_ || clock_.SteadyNow() - receipt_at_ > 10s;
+    stats.ground_present = stats.takes_backfill = (carries && ground_is_there) || !is_noticed;
     return stats;
   }
   std::optional<Receipt> receipt() const override { return receipt_; }
@@ -133,6 +140,7 @@ class SimulatedLink final : public Publisher {
   std::array<FrameNumberSet, 2> has_;
   std::array<std::uint64_t, 2> next_published_{};
   std::optional<Receipt> receipt_;
+  SteadyTime receipt_at_{};
   SteadyTime next_receipt_{};
   int since_receipt_ = 0;
 };
@@ -252,6 +260,38 @@ TEST_F(BackfillTest, WhatIsLiveComesFirst) {
   EXPECT_EQ(Missing(), 0U);
 }
 
+TEST_F(BackfillTest, ACameraThatWasLostWithFramesUnderWayHoldsNothingUp) {
+  CaptureFor(1s);
+  link_->carries = false;
+  CaptureFor(2s);
+  link_->carries = true;
+  // Of the thermal camera nothing more comes: the ground does not hear of what it sent last.
+  for (int i = 0; i < 160; ++i) {
+    EncodedDepthFrame depth;
+    depth.depth_scale = 1000.0;
+    Write(Sensor::kDepth, depth);
+    link_->SendLive(Sensor::kDepth, next_[0]++);
+    Pass(kPeriod);
+  }
+  EXPECT_EQ(link_->Missing(Sensor::kDepth, next_[0]), 0U);
+  End();
+  Pass(3s);
+  EXPECT_EQ(Missing(), 0U);
+}
+
+TEST_F(BackfillTest, AFileThatIsGoneIsGivenUpInTheEnd) {
+  CaptureFor(1s);
+  link_->carries = false;
+  CaptureFor(1s);
+  std::filesystem::remove(file_);
+  link_->carries = true;
+  CaptureFor(15s);
+  End();
+  Pass(6s);
+  EXPECT_EQ(link_->backfilled, 0U);
+  EXPECT_TRUE(backfill_->is_settled());
+}
+
 TEST_F(BackfillTest, WithoutAGroundNobodyIsWaitedForAtTheEnd) {
   link_->ground_is_there = false;
   CaptureFor(1s);
@@ -272,6 +312,8 @@ TEST_F(BackfillTest, AGroundThatWasCutOffIsWaitedForAtTheEnd) {
   Pass(5s);
   EXPECT_EQ(Missing(), 0U) << "what was sent last as well, of which the ground does not know";
   EXPECT_TRUE(backfill_->is_settled());
+  EXPECT_EQ(backfill_->arrived(), link_->duplicates + 80) << "each that arrived counts";
+  EXPECT_LE(link_->backfilled, 200U) << "what was sent into the outage, and not again and again";
 }
 
 TEST_F(BackfillTest, AGroundThatTakesNothingIsWaitedForNoLongerThanAsked) {

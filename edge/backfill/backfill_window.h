@@ -27,7 +27,7 @@ class BackfillWindow {
   /// sends five receipts a second. Smaller: frames are sent twice over a slow link. Not tuned.
   static constexpr Nanoseconds kLostAfter = std::chrono::seconds(2);
 
-  /// `max_frames` of one stream may be under way at once.
+  /// `max_frames` of both streams together may be under way at once.
   BackfillWindow(std::size_t max_frames, double frames_per_s)
       : max_frames_(max_frames), frames_per_s_(frames_per_s) {}
 

@@ -103,7 +103,7 @@ class Scan {
   /// Ends the cameras of a scan that was ordered to stop; what they have sent is still under way.
   /// Returns false if one does not end.
   bool EndCameras();
-  /// Closes the recording of a scan of which nothing is under way any more.
+  /// Closes the recording of a scan of which nothing is captured any more.
   void CloseRecording();
   /// Ends the recording, then the link, each in its time; `say` tells what was done. The process's
   /// exit status.
@@ -159,13 +159,15 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
     const bool ordered = orders_.state() == ScanOrders::State::kEnding;
     // The service manager starts the program anew.
     if (ordered && !EndCameras()) return Next::kLeave;
+    // Before the ground has everything: whoever switches the rig off then has a whole recording.
+    // Leaving closes it, too, and in time.
+    if (!parts_.options.exit_at_end() && cost_.empty() && pipeline_.IsCaptured()) CloseRecording();
     if (pipeline_.finished()) {
       if (parts_.options.exit_at_end()) return Next::kLeave;
       if (orders_.NoteFinished()) {
         LOG(Edge, Info)
             << (ordered ? "the scan has ended as ordered" : "the source has ended")
             << "; waiting for the order to start another scan, or for a signal to leave";
-        CloseRecording();
       }
     }
     Pause(parts_.stop, stop_limits::kTick);

@@ -10,7 +10,8 @@ const char* ScanOrders::ReasonAgainst(CommandKind kind) const {
     case State::kScanning:
       return starts ? "a scan is under way; stop it first" : nullptr;
     case State::kEnding:
-      return starts ? "the last frames of the scan before are still being written; try again"
+      return starts ? "the scan before is still being written, or sent to a ground that lacks some "
+                      "of it; try again"
                     : "the scan is ending already";
     case State::kEnded:
       return starts ? nullptr : "no scan is under way";

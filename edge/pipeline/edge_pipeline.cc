@@ -138,8 +138,6 @@ Status EdgePipeline::StopRecording() {
   if (std::exchange(recording_stopped_, true)) return recording_status_;
   static_cast<void>(StopCapture(kNoLimit));
   publish_thread_.request_stop();  // It need not wait for the disk.
-  backfill_thread_.request_stop();
-  if (backfill_thread_.joinable()) backfill_thread_.join();
   spool_thread_.request_stop();
   if (spool_thread_.joinable()) spool_thread_.join();
   if (!spool_) return recording_status_;
@@ -154,7 +152,7 @@ Status EdgePipeline::StopRecording() {
 Status EdgePipeline::Stop() {
   static_cast<void>(StopRecording());
   if (std::exchange(stopped_, true)) return recording_status_;
-  for (std::jthread* thread : {&publish_thread_, &receive_thread_}) {
+  for (std::jthread* thread : {&backfill_thread_, &publish_thread_, &receive_thread_}) {
     thread->request_stop();
     if (thread->joinable()) thread->join();
   }
@@ -175,13 +173,13 @@ Status EdgePipeline::Stop() {
 }
 
 bool EdgePipeline::finished() const {
-  if (!IsEachFrameSettled()) return false;
+  if (!IsCaptured()) return false;
   if (!backfill_) return true;
   backfill_->NoteEnd();
   return backfill_->is_settled();
 }
 
-bool EdgePipeline::IsEachFrameSettled() const {
+bool EdgePipeline::IsCaptured() const {
   if (!source_ended_) return false;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
     const SensorCounters counters = counters_.Get(sensor);
@@ -201,6 +199,8 @@ std::optional<SpoolStatus> EdgePipeline::recording() const {
 
 std::optional<std::string> EdgePipeline::StuckIn(SteadyTime now) const {
   if (recording_.AtItFor(now) > kStuck) return "the disk does not answer";
+  if (backfill_ && backfill_->AtItFor(now) > kStuck)
+    return "what the ground lacks cannot be read, the disk does not answer";
   if (reading_.AtItFor(now) > kStuck) return "the source of frames does not answer";
   if (publishing_.AtItFor(now) > kLinkStuck) return "the network does not answer";
   return std::nullopt;

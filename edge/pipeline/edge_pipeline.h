@@ -88,7 +88,9 @@ class EdgePipeline {
   /// Returns whether the source has ended. Thread-safe.
   bool source_ended() const { return source_ended_; }
   /// Returns true when the source has ended and each of its frames was recorded and published, or
-  /// dropped and counted, and the ground has what it can have of them. Thread-safe.
+  /// dropped and counted. Thread-safe.
+  bool IsCaptured() const;
+  /// Returns true when that is so, and the ground has what it can have of them. Thread-safe.
   bool finished() const;
   /// Returns how many recorded frames the ground lacks, as far as is known, and how many were sent
   /// to it from the recording. Thread-safe.
@@ -116,8 +118,6 @@ class EdgePipeline {
     Image<std::uint16_t> pixels;
   };
 
-  /// Returns whether each captured frame was recorded and published, or dropped and counted.
-  bool IsEachFrameSettled() const;
   void Capture(const std::stop_token& stop);
   Result<SourceItem> Read(const std::stop_token& stop);
   void Process(RawFrame raw, const std::stop_token& stop);

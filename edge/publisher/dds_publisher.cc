@@ -84,6 +84,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   if (echo.ping != 0) clock_echo_ = echo;
   if (session_ == receipt.session && accepted) {
     receipt_.Set(receipt);
+    receipt_at_ = now;
     depth_.window().OnReceipt(receipt.depth.handled, now);
     thermal_.window().OnReceipt(receipt.thermal.handled, now);
   }
@@ -154,6 +155,7 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
     depth_.BeginSession();
     thermal_.BeginSession();
     flow_waits_ = flow_timeouts_ = 0;
+    receipt_at_.reset();
   }
   receipt_.Take();  // Of the session before.
   return Announce(rig);
@@ -226,7 +228,7 @@ Result<bool> DdsPublisher::BackfillFrame(const Frame& frame, Writer<Backfilled<F
       return Err(FailedPrecondition(
           fmt::format("frame of session {}, which has not begun", frame.header.session)));
     }
-    stream->sent().NoteAgain();
+    stream->sent().NoteAgain(frame.header.frame_number);
   }
   if (Status written = writer->Write(options_.edge_id, Backfilled<Frame>{frame}); !written.ok()) {
     return Err(std::move(written));
@@ -285,16 +287,19 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
 
 PublisherStats DdsPublisher::stats() const {
   MutexLock lock(mutex_);
-  return {.depth = depth_.counts(),
-          .thermal = thermal_.counts(),
-          .flow_waits = flow_waits_,
-          .flow_timeouts = flow_timeouts_,
-          .refused = refusals_.total(),
-          .ground_present = grounds_.is_present(),
-          .takes_backfill = grounds_.HasFollower([this](PeerHandle peer) {
-            return ends_.backfill_depth.Reaches(peer) && ends_.backfill_thermal.Reaches(peer);
-          }),
-          .ground_problem = grounds_.Problem(clock_.SteadyNow())};
+  const SteadyTime now = clock_.SteadyNow();
+  return {
+      .depth = depth_.counts(),
+      .thermal = thermal_.counts(),
+      .flow_waits = flow_waits_,
+      .flow_timeouts = flow_timeouts_,
+      .refused = refusals_.total(),
+      .ground_present = grounds_.is_present(),
+      .receipt_age = receipt_at_ ? std::optional<Nanoseconds>(now - *receipt_at_) : std::nullopt,
+      .takes_backfill = grounds_.HasFollower([this](PeerHandle peer) {
+        return ends_.backfill_depth.Reaches(peer) && ends_.backfill_thermal.Reaches(peer);
+      }),
+      .ground_problem = grounds_.Problem(now)};
 }
 
 Result<std::unique_ptr<Publisher>> Publisher::Create(const Participant& participant,

@@ -2,14 +2,18 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
 #include "common/base/host_name.h"
 #include "common/base/mutex.h"
+#include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
+#include "common/time/clock.h"
 #include "edge/publisher/edge_endpoints.h"
 #include "edge/publisher/ground_watch.h"
 #include "edge/publisher/outgoing_stream.h"
@@ -128,7 +132,8 @@ class DdsPublisher final : public Publisher {
   OutgoingStream thermal_ GUARDED_BY(mutex_);
   std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
   std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
-  std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);  // Not sent yet.
+  std::optional<SteadyTime> receipt_at_ GUARDED_BY(mutex_);  // The newest of the session.
+  std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);   // Not sent yet.
   GroundWatch grounds_ GUARDED_BY(mutex_);
   StopBudget stop_budget_ GUARDED_BY(mutex_);
 };

@@ -43,18 +43,19 @@ TEST_F(OutgoingStreamTest, AFrameThatFailedIsNotPublishedAndTakesNoRoom) {
 
 TEST_F(OutgoingStreamTest, AFrameFromTheRecordingCountsOnceAndMayBeReceivedAgain) {
   for (const std::uint64_t number : {0, 3}) Publish(number);
-  stream_.sent().NoteAgain();
+  stream_.sent().NoteAgain(1);
   EXPECT_TRUE(stream_.OnBackfilled(1)) << "it had been dropped before the link";
   EXPECT_EQ(stream_.counts().published, 3U);
-  stream_.sent().NoteAgain();
+  stream_.sent().NoteAgain(3);
   EXPECT_FALSE(stream_.OnBackfilled(3)) << "the link had lost it";
   EXPECT_EQ(stream_.counts().published, 3U);
   EXPECT_EQ(stream_.counts().next_frame_number, 4U);
   EXPECT_EQ(Check(4, 3), std::nullopt);
   EXPECT_EQ(Check(5, 3), RefusalCause::kImpossibleNumber) << "nobody sent it";
   stream_.BeginSession();
-  stream_.sent().NoteAgain();
+  stream_.sent().NoteAgain(3);
   EXPECT_TRUE(stream_.OnBackfilled(3));
+  EXPECT_EQ(Check(4, 1), std::nullopt) << "nothing else was published: the network came late";
 }
 
 TEST_F(OutgoingStreamTest, ANewSessionKnowsNothingOfTheOneBefore) {

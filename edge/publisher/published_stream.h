@@ -27,7 +27,10 @@ class PublishedStream {
 
   /// To be called before a frame is written that the ground lacks, whether it was sent before or
   /// not.
-  void NoteAgain() { ++count_; }
+  void NoteAgain(std::uint64_t frame_number) {
+    next_ = std::max(next_, frame_number + 1);
+    ++count_;
+  }
 
   /// Says why the receipt cannot be true: more than was published cannot have been received.
   std::optional<RefusalCause> Check(const StreamReceipt& receipt) const {

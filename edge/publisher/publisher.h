@@ -38,6 +38,8 @@ struct PublisherStats {
   std::uint64_t flow_timeouts = 0;  ///< Frames that were published although no receipt came.
   std::uint64_t refused = 0;        ///< Samples that cannot be, or not from a ground station.
   bool ground_present = false;
+  /// Since the newest receipt of this session; nullopt: none came.
+  std::optional<Nanoseconds> receipt_age{};
   bool takes_backfill = false;   ///< A ground that follows this rig reads what Backfill sends.
   std::string problem{};         ///< Why there is no network at all; empty if there is one.
   std::string ground_problem{};  ///< GroundRelation::Problem.

@@ -6,6 +6,11 @@
 #include <utility>
 
 namespace isotherm {
+namespace {
+
+constexpr std::uint64_t kLastNumber = std::numeric_limits<std::uint64_t>::max();
+
+}  // namespace
 
 void RecordedFrames::BeginFile(const std::filesystem::path& file) {
   MutexLock lock(mutex_);
@@ -22,7 +27,7 @@ void RecordedFrames::Add(Sensor sensor, std::uint64_t number, CaptureTime time) 
     runs.back().last = number;
   } else {
     // The oldest are what the ground is least likely to wait for.
-    if (runs.size() == kMaxRuns) runs.erase(runs.begin(), runs.begin() + kMaxRuns / 2);
+    if (runs.size() >= kMaxRuns) runs.erase(runs.begin(), runs.begin() + kMaxRuns / 2);
     runs.push_back({number, number});
   }
   AddMark({number, time, files_.size() - 1}, stream);
@@ -75,10 +80,18 @@ void RecordedFrames::ForgetRest(Sensor sensor, std::uint64_t number,
   const auto next_file = std::ranges::find_if(stream.marks, [&](const Mark& mark) {
     return mark.number > number && files_[mark.file] != file;
   });
-  const std::uint64_t end = next_file == stream.marks.end()
-                                ? std::numeric_limits<std::uint64_t>::max()
-                                : next_file->number;
-  Cut({number, end - 1}, stream);
+  Cut({number, next_file == stream.marks.end() ? kLastNumber : next_file->number - 1}, stream);
+}
+
+void RecordedFrames::ForgetAll(Sensor sensor, const std::filesystem::path& file) {
+  MutexLock lock(mutex_);
+  Stream& stream = streams_[static_cast<std::size_t>(sensor)];
+  const auto is_in_file = [&](const Mark& mark) { return files_[mark.file] == file; };
+  const auto first = std::ranges::find_if(stream.marks, is_in_file);
+  const auto end = std::find_if_not(first, stream.marks.end(), is_in_file);
+  if (first == end) return;
+  const std::uint64_t last = end == stream.marks.end() ? kLastNumber : end->number - 1;
+  Cut({first->number, last}, stream);
 }
 
 std::vector<FrameRange> RecordedFrames::Of(Sensor sensor,

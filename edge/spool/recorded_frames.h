@@ -41,6 +41,9 @@ class RecordedFrames {
   /// that is the newest, where they may still come.
   void ForgetRest(Sensor sensor, std::uint64_t number, const std::filesystem::path& file);
 
+  /// The same for all frames of a file so far.
+  void ForgetAll(Sensor sensor, const std::filesystem::path& file);
+
   /// Returns which of the frames in `wanted`, ascending ranges, are recorded; ascending.
   std::vector<FrameRange> Of(Sensor sensor, const std::vector<FrameRange>& wanted) const;
   /// Returns a place at or before a recorded frame, or nothing if none is known.

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "common/testing/test_seed.h"
 
@@ -92,6 +94,25 @@ TEST(RecordedFramesTest, TheRestOfAFileThatBrokeOffIsForgottenButNotThatOfTheNew
   recorded.ForgetRest(Sensor::kDepth, 90, "scan.mcap");
   EXPECT_THAT(recorded.Of(Sensor::kDepth, all),
               ElementsAre(FrameRange{0, 89}, FrameRange{100, 149}));
+}
+
+TEST(RecordedFramesTest, AFileThatCannotBeOpenedIsForgottenAndTheOthersAreNot) {
+  RecordedFrames recorded;
+  for (const auto& [file, first] :
+       {std::pair("scan.mcap", 0), std::pair("scan-2.mcap", 100), std::pair("scan-3.mcap", 200)}) {
+    recorded.BeginFile(file);
+    for (std::uint64_t number = first; number < first + 100U; ++number)
+      recorded.Add(Sensor::kDepth, number, TimeOf(number));
+  }
+  recorded.ForgetAll(Sensor::kDepth, "scan-2.mcap");
+  const std::vector<FrameRange> all = {{0, 1000}};
+  EXPECT_THAT(recorded.Of(Sensor::kDepth, all),
+              ElementsAre(FrameRange{0, 99}, FrameRange{200, 299}));
+  recorded.ForgetAll(Sensor::kDepth, "scan-3.mcap");
+  recorded.Add(Sensor::kDepth, 300, TimeOf(300));
+  EXPECT_THAT(recorded.Of(Sensor::kDepth, all),
+              ElementsAre(FrameRange{0, 99}, FrameRange{300, 300}))
+      << "what follows is known";
 }
 
 TEST(RecordedFramesTest, LongScansAndManyGapsTakeBoundedMemory) {

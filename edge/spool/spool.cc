@@ -51,7 +51,7 @@ Status Spool::BeginFile() {
   if (!file) return file.error();
   file_ = std::move(*file);
   path_ = file_->path;
-  recorded_frames_.BeginFile(path_);
+  if (!IsDevice(path_)) recorded_frames_.BeginFile(path_);  // The others cannot be read back.
   begun_at_ = parts_.clock.SteadyNow();
   // Each file tells the clock's steps from its own beginning, so that it can be read without the
   // others.

@@ -334,7 +334,7 @@ Result<ConvertSummary> Convert(const ConvertRequest& request, RecordingReader& r
   if (!others) return Err(others.error());
   RecordingOptions options;
   options.image_storage = request.storage;
-  options.sync = false;  // Converting again costs nothing.
+  options.sync = request.sync;
   auto writer = RecordingWriter::Create(request.output, options);
   if (!writer) return Err(writer.error());
   Converter converter(request, reader, *others, **writer);

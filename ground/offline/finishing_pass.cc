@@ -56,7 +56,8 @@ Status FuseOnFinishedSurface(const FirstPass& first, ThermalPass& pass,
   FinishingDriver driver(first, pass);
   const auto told_before = [](const Status& /*error*/) {};
   ReadItems(
-      **reader, [&driver](const RecordedItem& item) { driver.Take(item); }, told_before, progress);
+      **reader, [&driver](const RecordedItem& item) { driver.Take(item); }, told_before, progress,
+      first.stop);
   driver.Finish();
   return OkStatus();
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "common/base/status.h"
@@ -17,6 +18,7 @@ struct FirstPass {
   std::optional<double> depth_scale;  ///< Instead of the frames' own.
   Nanoseconds thermal_delay;          ///< Added to the recorded capture times.
   std::vector<CaptureTime> held_out;  ///< Stamps of the thermal frames left out, ascending.
+  std::stop_token stop{};             ///< Ends the second pass early.
 };
 
 /// Gives the same frames to a pass over the finished surface, in the same order. What cannot be

@@ -31,8 +31,6 @@ namespace {
 /// Fractions of the progress; the rest is writing results.
 constexpr double kFramesFraction = 0.60, kMergeFraction = 0.05, kFinishingFraction = 0.25;
 constexpr double kDelayFraction = 0.05;
-Status Stopped() { return Unavailable("told to stop"); }
-
 /// Where both passes end.
 constexpr double kPassesFraction = kFramesFraction + kMergeFraction + kFinishingFraction;
 
@@ -47,6 +45,8 @@ std::optional<double> CalibratedDelay(const RecordingInfo& info, const Rig& rig)
 std::optional<double> DepthScale(const ReconstructRequest& request) {
   return request.rig ? std::optional(request.rig->depth_scale) : std::nullopt;
 }
+
+Status Stopped() { return Unavailable("told to stop"); }
 
 /// Frames of a recording, decoded and fed through the assembler into the pipeline.
 class InlineDriver {
@@ -68,7 +68,6 @@ class InlineDriver {
 
   Status Run() {
     const auto take = [this](RecordedItem& item) {
-      if (request_.stop.stop_requested()) return;  // What is left is only read.
       std::visit([this](auto& recorded) { Take(recorded); }, item);
       // As many as are complete: memory does not grow with the recording.
       while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -77,9 +76,12 @@ class InlineDriver {
       ++bad_messages_;
       LOG(Reconstruct, Warning) << error.message();
     };
-    ReadItems(reader_, take, fail, [this](double fraction) {
-      if (request_.progress) request_.progress(kFramesFraction * fraction, "reconstructing");
-    });
+    ReadItems(
+        reader_, take, fail,
+        [this](double fraction) {
+          if (request_.progress) request_.progress(kFramesFraction * fraction, "reconstructing");
+        },
+        request_.stop);
     // Frames that wait for a partner: none will come.
     while (const auto frame = assembler_.Flush()) Process(*frame);
     if (request_.stop.stop_requested()) return Stopped();
@@ -160,7 +162,7 @@ class InlineDriver {
     const std::unique_ptr<ThermalPass> pass = pipeline_.BeginThermalPass();
     if (pass == nullptr) return OkStatus();
     return FuseOnFinishedSurface(
-        {request_.recording, DepthScale(request_), thermal_delay_, held_out_}, *pass,
+        {request_.recording, DepthScale(request_), thermal_delay_, held_out_, request_.stop}, *pass,
         [this](double fraction) {
           if (request_.progress)
             request_.progress(kFramesFraction + kMergeFraction + kFinishingFraction * fraction,
@@ -310,6 +312,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   const ProcessorTimes before = ReadProcessorTimes();
   InlineDriver driver(request, *scan->reader, *scan->rig, pipeline);
   if (Status status = driver.Run(); !status.ok()) return Err(status);
+  if (request.stop.stop_requested()) return Err(Stopped());
   const ProcessorTimes used = ReadProcessorTimes() - before;
   const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -319,7 +322,6 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   stats["elapsed_s"] = elapsed.count();
   stats["processor"] = DescribeProcessor(used, pipeline.model().trajectory);
   if (request.describe) request.describe(stats);
-  if (request.stop.stop_requested()) return Err(Stopped());
   const auto progress = [&](std::string_view what, double fraction) {
     constexpr double kBefore = kPassesFraction + kDelayFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);

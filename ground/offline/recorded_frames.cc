@@ -21,10 +21,10 @@ Status LeftOut(const char* stream, const FrameHeader& header, const Status& erro
 
 void ReadItems(RecordingReader& reader, const std::function<void(RecordedItem&)>& take,
                const std::function<void(const Status&)>& fail,
-               const std::function<void(double)>& progress) {
+               const std::function<void(double)>& progress, const std::stop_token& stop) {
   std::uint64_t total = 0, read = 0;
   for (const auto& [topic, count] : reader.info().messages_by_topic) total += count;
-  while (true) {
+  while (!stop.stop_requested()) {
     Result<std::optional<RecordedItem>> item = reader.Next();
     ++read;
     if (!item) {

@@ -195,12 +195,14 @@ void GroundService::ShowEnded(std::unique_ptr<LiveScan> scan) {
 
 int GroundService::Run() {
   OpenConsole();
-  const auto written = [this](std::unique_ptr<LiveScan> scan) {
-    ShowEnded(std::move(scan));
-    if (mode_.single_scan) signal_.Request();
-  };
+  const ResultWriter::Handlers handlers{
+      .written = [this](std::unique_ptr<LiveScan> scan) { ShowEnded(std::move(scan)); },
+      .completed =
+          [this] {
+            if (mode_.single_scan) signal_.Request();
+          }};
   const auto counters = [this](std::uint64_t session) { return subscriber_->counters(session); };
-  ResultWriter results(options_, clock_, counters, board_, health_.results, written);
+  ResultWriter results(options_, clock_, counters, board_, health_.results, handlers);
   RecordingLoop recording(options_, clock_, board_, health_.recording);
   ReconstructionLoop reconstruction(
       options_, clock_,

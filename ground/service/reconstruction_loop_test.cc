@@ -138,12 +138,13 @@ class ReconstructionLoopTest : public ::testing::Test {
   ScanBoard board_;
   ThreadProgress progress_, result_progress_;
   std::atomic<int> written_{0};
-  ResultWriter results_{options_,
-                        clock_,
-                        [this](std::uint64_t session) { return subscriber_.counters(session); },
-                        board_,
-                        result_progress_,
-                        [this](const std::unique_ptr<LiveScan>&) { ++written_; }};
+  ResultWriter results_{
+      options_,
+      clock_,
+      [this](std::uint64_t session) { return subscriber_.counters(session); },
+      board_,
+      result_progress_,
+      {.written = [this](const std::unique_ptr<LiveScan>&) { ++written_; }, .completed = {}}};
   SessionQueue queue_{1000, OverflowPolicy::kBlock};
   ReconstructionLoop loop_{
       options_, clock_, {subscriber_, recording_, results_, board_, progress_}};

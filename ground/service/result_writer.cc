@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 /// The recording's end is written at the same time. A disk that takes longer is slow or stuck.
 constexpr Nanoseconds kClosingPatience = 1s;
+constexpr Nanoseconds kLateClosingPatience = 10s;
 
 Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCounters& counters,
                  const RecordingProgress& recording, std::uint64_t unprocessed) {
@@ -46,6 +47,12 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
     stats["console"] = std::move(console);
   stats["processor"] = DescribeProcessor(scan.processor_times(), scan.model().trajectory);
   return stats;
+}
+
+std::string WhereLateFramesAre(const RecordingProgress& recording) {
+  return fmt::format(
+      "what came late is in {} (isotherm merge-recordings, then isotherm reconstruct)",
+      (recording.late_files.empty() ? recording.path : recording.late_files.front()).string());
 }
 
 /// Returns where results go that cannot be written where they belong.
@@ -108,16 +115,23 @@ std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
 void ResultWriter::Run(const std::stop_token& stop) {
   while (std::optional<EndedScan> ended = Take(stop)) {
     progress_.Busy(clock_.SteadyNow());
-    FinishScan(*ended, stop);
+    const Json stats = FinishScan(*ended);
+    handlers_.written(std::move(ended->scan));
+    if (!stats.is_null()) {
+      Complete(ended->start, stats, stop);
+    } else if (const RecordingProgress recording = ended->start.recording->Get();
+               recording.late_frames > 0) {
+      LOG(Ground, Warning) << WhereLateFramesAre(recording);
+    }
     progress_.Idle();
     // The reserve on the disk was for these results; a scan under way says again what it needs.
     if (--board_.scans_being_written == 0) board_.result_bytes = 0;
-    written_(std::move(ended->scan));
+    if (handlers_.completed) handlers_.completed();
   }
 }
 
-void ResultWriter::FinishScan(EndedScan& ended, const std::stop_token& stop) {
-  if (!ended.scan) return;  // Recorded only.
+Json ResultWriter::FinishScan(EndedScan& ended) {
+  if (!ended.scan) return nullptr;  // Recorded only.
   LiveScan& scan = *ended.scan;
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
   scan.FinishFrames([&](double) { go_on(); });
@@ -131,16 +145,20 @@ void ResultWriter::FinishScan(EndedScan& ended, const std::stop_token& stop) {
   if (!text) {
     status_ = text.error();
     LOG(Ground, Error) << status_.message();
-    return;
+    return nullptr;
   }
   WriteStandardOutput(*text + CountersText(counters, recording) +
                       ConclusionText(scan.behind(), scan.areas(),
                                      options_.feedback().done_fraction(), recording.path));
-  if (NeedsCompletion(options_, recording)) Complete(ended, stats, recording, stop);
+  return stats;
 }
 
-void ResultWriter::Complete(const EndedScan& ended, const Json& stats,
-                            const RecordingProgress& recording, const std::stop_token& stop) {
+void ResultWriter::Complete(const SessionStart& start, const Json& stats,
+                            const std::stop_token& stop) {
+  if (start.recording->Get().late_frames == 0) return;
+  // Two files are being closed; whoever waits for results has some by now.
+  const RecordingProgress recording = start.recording->WaitUntilClosed(kLateClosingPatience);
+  if (!NeedsCompletion(options_, recording)) return;
   LOG(Ground, Info) << "frames came late, frames=" << recording.late_frames
                     << ": the recording and the results are completed";
   std::stop_source give_up;
@@ -154,19 +172,17 @@ void ResultWriter::Complete(const EndedScan& ended, const Json& stats,
     for (const char* part : {"link", "feedback", "console"}) {
       if (stats.contains(part)) json[part] = stats[part];
     }
-    json["link"]["frames_that_came_late"] = recording.late_frames;
+    json["link"]["recording_files"] = {recording.path.filename().string()};
   };
   const Result<std::string> completed = CompleteScan({.options = options_,
-                                                      .folder = ended.start.folder,
+                                                      .folder = start.folder,
                                                       .recording = recording,
                                                       .describe = describe,
                                                       .go_on = go_on,
                                                       .stop = give_up.get_token()});
   if (completed) return WriteStandardOutput(*completed);
-  LOG(Ground, Warning)
-      << "the scan is not completed: " << completed.error().message() << "; what came late is in "
-      << (recording.late_files.empty() ? recording.path : recording.late_files.front()).string()
-      << " (isotherm merge-recordings, isotherm reconstruct)";
+  LOG(Ground, Warning) << "the scan is not completed: " << completed.error().message() << "; "
+                       << WhereLateFramesAre(recording);
 }
 
 Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayReport& delay,

@@ -34,16 +34,20 @@ class ResultWriter {
  public:
   /// Returns what is known of a session's frames by now.
   using CountersSource = std::function<SessionCounters(std::uint64_t session)>;
-  /// `written` is called after each scan, whatever became of its results; it gets the scan.
+  /// What is called after each scan, whatever became of its results.
+  struct Handlers {
+    /// Gets the scan once the results of the live model are there.
+    std::function<void(std::unique_ptr<LiveScan>)> written;
+    std::function<void()> completed;  ///< Nothing more is done for the scan. May be empty.
+  };
   ResultWriter(const GroundOptions& options, const Clock& clock, CountersSource counters,
-               ScanBoard& board, ThreadProgress& progress,
-               std::function<void(std::unique_ptr<LiveScan>)> written)
+               ScanBoard& board, ThreadProgress& progress, Handlers handlers)
       : options_(options),
         clock_(clock),
         counters_(std::move(counters)),
         board_(board),
         progress_(progress),
-        written_(std::move(written)) {}
+        handlers_(std::move(handlers)) {}
 
   /// Takes a scan, or gives its results up, counted and logged, if there is no room for it. With a
   /// live rig, which does not wait for us, it decides at once; with a replay after kReplayPatience.
@@ -65,10 +69,10 @@ class ResultWriter {
   void GiveUp(const EndedScan& ended);
   std::optional<EndedScan> Take(const std::stop_token& stop);
   /// Processes a scan's last frames, checks its delay and writes its results.
-  void FinishScan(EndedScan& ended, const std::stop_token& stop);
+  /// Returns its statistics; null if there are no results.
+  Json FinishScan(EndedScan& ended);
   /// Brings in what came too late for the model, and gives up when another scan waits.
-  void Complete(const EndedScan& ended, const Json& stats, const RecordingProgress& recording,
-                const std::stop_token& stop);
+  void Complete(const SessionStart& start, const Json& stats, const std::stop_token& stop);
   /// Writes into the scan's folder or, if that fails, into another. Returns the summary.
   Result<std::string> WriteWithFallback(LiveScan& scan, const DelayReport& delay, const Json& stats,
                                         const std::filesystem::path& folder);
@@ -78,7 +82,7 @@ class ResultWriter {
   const CountersSource counters_;
   ScanBoard& board_;
   ThreadProgress& progress_;
-  const std::function<void(std::unique_ptr<LiveScan>)> written_;
+  const Handlers handlers_;
   Mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<EndedScan> waiting_ GUARDED_BY(mutex_);

@@ -91,7 +91,7 @@ class ResultWriterTest : public ::testing::Test {
                        },
                        board_,
                        progress_,
-                       [](const std::unique_ptr<LiveScan>&) {}};
+                       {.written = [](const std::unique_ptr<LiveScan>&) {}, .completed = {}}};
   std::jthread thread_;
 };
 

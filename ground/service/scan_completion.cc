@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
@@ -22,8 +23,9 @@ namespace fs = std::filesystem;
 
 /// A model that lacks fewer of its frames is as good as one with them. Not tuned.
 constexpr double kNegligible = 0.01;
-/// Left free beside the new recording, for the results.
-constexpr std::uintmax_t kReserveBytes = 200U << 20;
+/// Left free beside the new recording, for results and for a scan that is recorded meanwhile: three
+/// minutes of it.
+constexpr std::uintmax_t kReserveBytes = 1U << 30;
 /// Whatever is live goes first.
 constexpr int kNiceness = 10;
 
@@ -62,10 +64,19 @@ Status MergeFiles(const CompletionRequest& request, const std::vector<fs::path>&
                                                                     : ImageStorage::kCompact;
   merge.progress = [&request](double) { request.go_on(); };
   merge.stop = request.stop;
-  if (const Result<ConvertSummary> merged = ConvertRecording(merge); !merged) return merged.error();
+  merge.sync = true;
+  const Result<ConvertSummary> merged = ConvertRecording(merge);
+  if (!merged) return merged.error();
+  if (merged->depth_frames < request.recording.depth_frames ||
+      merged->thermal_frames < request.recording.thermal_frames) {
+    return DataLoss(fmt::format("{}: only {} of {} frames can be read back", files.front().string(),
+                                merged->depth_frames + merged->thermal_frames,
+                                request.recording.depth_frames + request.recording.thermal_frames));
+  }
   ISOTHERM_RETURN_IF_ERROR(whole->Commit());
+  // On the disk, under its name: the parts are superfluous from here on.
   for (const fs::path& file : merge.others) {
-    std::error_code ignored;  // It is superfluous, and no harm.
+    std::error_code ignored;  // One that stays is no harm.
     fs::remove(file, ignored);
   }
   return OkStatus();

@@ -23,7 +23,7 @@ struct CompletionRequest {
   std::stop_token stop;
 };
 
-/// Returns whether there is something to complete: frames came late, and the disk took all.
+/// Returns whether there is something to complete: frames came late and were recorded.
 bool NeedsCompletion(const GroundOptions& options, const RecordingProgress& recording);
 
 /// Makes one recording of the files that the scan was recorded into, in the order of time, and, if

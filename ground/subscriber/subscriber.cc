@@ -179,7 +179,8 @@ bool DdsSubscriber::TakeRound() {
                              TakeSamples(&ends_.backfill_thermal, kBackfillPerRound);
   // A description may end a session, whose last frames were sent before it on other topics: those
   // have arrived by now, and are taken first.
-  const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerRound;
+  const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerRound ||
+                               backfill_taken >= kBackfillPerRound;
   if (!descriptions_.empty() &&
       (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames)) {
     AdmitDescriptions();
