@@ -25,6 +25,7 @@ class GroundSide {
     SubscriberHandlers handlers;
     handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
     handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
+    handlers.late_depth = [this](ReceivedDepth item) { Take(*item.encoded, &late_depth_); };
     handlers.external_odometry = [this](const ExternalOdometrySample& sample) {
       Update([&]() REQUIRES(mutex_) { external_odometry_.push_back(sample.number); });
     };
@@ -59,6 +60,16 @@ class GroundSide {
     MutexLock lock(mutex_);
     return changed_.wait_for(lock, kLinkPatience,
                              [&]() REQUIRES(mutex_) { return depth_.size() >= count; });
+  }
+  /// Those that came behind their place.
+  bool AwaitLateDepth(std::size_t count) {
+    MutexLock lock(mutex_);
+    return changed_.wait_for(lock, kLinkPatience,
+                             [&]() REQUIRES(mutex_) { return late_depth_.size() >= count; });
+  }
+  std::vector<std::uint64_t> late_depth() const {
+    MutexLock lock(mutex_);
+    return late_depth_;
   }
   std::vector<std::uint64_t> AwaitExternalOdometry(std::size_t count) {
     MutexLock lock(mutex_);
@@ -117,6 +128,7 @@ class GroundSide {
   std::condition_variable_any changed_;
   std::vector<std::uint64_t> depth_ GUARDED_BY(mutex_);
   std::vector<std::uint64_t> thermal_ GUARDED_BY(mutex_);
+  std::vector<std::uint64_t> late_depth_ GUARDED_BY(mutex_);
   std::vector<std::uint64_t> external_odometry_ GUARDED_BY(mutex_);
   std::optional<std::uint64_t> rig_session_ GUARDED_BY(mutex_);
   std::optional<CommandResult> result_ GUARDED_BY(mutex_);

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -143,6 +144,82 @@ TEST_F(LinkTest, F19AGroundThatJoinsLateKnowsExactlyWhatItMissed) {
   EXPECT_EQ(counters->depth.missing, first);
   EXPECT_EQ(ground->depth(), Range(first, 200));
   EXPECT_EQ(ground->rig_session(), plan.session);  // Written before the ground was there.
+}
+
+TEST_F(LinkTest, WhatTheGroundLacksComesOnAWayOfItsOwnAndIsConfirmed) {
+  EdgePlan plan = Plan(40, 40);
+  plan.policy = PublishPolicy::kLive;
+  const auto ground = StartGround();
+  EdgeSide edge(environment_, clock_, plan);
+  Publisher& publisher = edge.publisher();
+  edge.Begin();
+  ASSERT_TRUE(publisher.WaitForGround(kLinkPatience, {}));
+  EXPECT_TRUE(publisher.stats().takes_backfill);
+  edge.SendFrames(0, 10);
+  edge.SendFrames(15, 25);
+  const auto await_receipt = [&](const auto& is_wanted) {
+    const SteadyTime deadline = clock_.SteadyNow() + kLinkPatience;
+    while (clock_.SteadyNow() < deadline) {
+      const std::optional<Receipt> receipt = publisher.receipt();
+      if (receipt && is_wanted(*receipt)) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  };
+  const std::vector<FrameRange> hole = {{10, 14}};
+  ASSERT_TRUE(await_receipt([&](const Receipt& receipt) {
+    return receipt.depth.handled == 25 && receipt.depth.holes == hole;
+  })) << "the ground does not say what it lacks";
+  EXPECT_EQ(publisher.stats().depth.published, 20U);
+  for (std::uint64_t number = 10; number < 15; ++number) {
+    const auto depth =
+        publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session, number, 64, 48));
+    ASSERT_TRUE(depth) << depth.error().message();
+    EXPECT_TRUE(*depth) << "it had not been published before";
+  }
+  ASSERT_TRUE(ground->AwaitLateDepth(5));
+  EXPECT_EQ(ground->late_depth(), Range(10, 15));
+  EXPECT_EQ(publisher.stats().depth.published, 25U);
+  EXPECT_TRUE(await_receipt([](const Receipt& receipt) {
+    return receipt.depth.received == 25 && receipt.depth.holes.empty();
+  }));
+  // Once more: it was lost on the way, for all that the edge knows.
+  EXPECT_FALSE(*publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session, 10, 64, 48)));
+  EXPECT_FALSE(publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session + 1, 10, 64, 48)))
+      << "of another session";
+  EXPECT_TRUE(edge.End());
+  const auto counters = ground->AwaitSessionEnd();
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_EQ(counters->depth.published, 25U);
+  EXPECT_EQ(counters->depth.received, 25U);
+  EXPECT_EQ(counters->depth.missing, 0U);
+  EXPECT_EQ(counters->depth.late, 5U);
+  EXPECT_EQ(ground->corrupt(), 0);
+}
+
+/// Receipts are sent sooner when many frames come, which must not put off those after them.
+TEST_F(LinkTest, ReceiptsGoOnWhenAStreamHasEnded) {
+  EdgePlan plan = Plan(1, 1);
+  const auto ground = StartGround();
+  EdgeSide edge(environment_, clock_, plan);
+  edge.Begin();
+  ASSERT_TRUE(edge.publisher().WaitForGround(kLinkPatience, {}));
+  // A hundred receipts for these would be 20 s at their own rate.
+  for (std::uint64_t number = 0; number < 800; ++number) {
+    ASSERT_TRUE(edge.publisher()
+                    .Publish(MakeFrame<EncodedThermalFrame>(plan.session, number, 38, 28), {})
+                    .ok());
+  }
+  const SteadyTime ended = clock_.SteadyNow();
+  std::this_thread::sleep_for(1s);  // Nothing is sent: that is what is tested.
+  int receipts = 0;
+  for (auto before = edge.publisher().stats().receipt_age;
+       receipts < 3 && clock_.SteadyNow() - ended < 15s; std::this_thread::sleep_for(20ms)) {
+    const auto age = edge.publisher().stats().receipt_age;
+    receipts += age < before ? 1 : 0;
+    before = age;
+  }
+  EXPECT_EQ(receipts, 3) << "three in a second and a half, when all is well";
 }
 
 TEST_F(LinkTest, ARestartedEdgeIsANewSession) {
