@@ -72,7 +72,7 @@ class Backfill {
  private:
   /// The history of a topic holds them all, whichever stream they are of.
   static constexpr std::size_t kMaxUnderWay = kMaxFlowWindowFrames;
-  /// What is wanted of each stream, by Sensor; ascending.
+  /// Holds the ranges that are wanted of each stream, by Sensor; ascending.
   using Wanted = std::array<std::vector<FrameRange>, 2>;
 
   void TakeReceipt(const Receipt& receipt, SteadyTime now);
@@ -111,7 +111,7 @@ class Backfill {
   /// one of the target's stream begins before the target.
   std::array<std::optional<std::uint64_t>, 2> passed_;
   std::optional<Receipt> receipt_;                     ///< The newest.
-  std::array<std::map<std::uint64_t, int>, 2> tries_;  ///< Of frames that got lost, by Sensor.
+  std::array<std::map<std::uint64_t, int>, 2> tries_;  ///< Counts those that got lost, by Sensor.
   Wanted wanted_;                                      ///< By the newest receipt.
   SteadyTime next_look_{};                             ///< At the receipt.
   SteadyTime retry_at_{};                              ///< The file has not got what is wanted.
@@ -122,7 +122,7 @@ class Backfill {
   SteadyTime progress_at_{};  ///< Since the source has ended.
   std::uint64_t lacked_ = 0;  ///< At that time.
   bool is_ending_ = false;
-  bool is_stalled_ = false;  ///< What was published and has not arrived will not come by itself.
+  bool is_stalled_ = false;  ///< Nothing that was published comes by itself any more.
   ThreadProgress progress_;
   std::atomic<bool> source_ended_{false};
   std::atomic<bool> settled_{false};

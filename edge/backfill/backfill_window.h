@@ -59,7 +59,7 @@ class BackfillWindow {
     limit_ = std::clamp(limit_, kMinLimit, static_cast<double>(max_frames_));
     return lost;
   }
-  /// What is live has to wait: the link is full. To be called at most ten times a second.
+  /// Live frames have to wait: the link is full. To be called at most ten times a second.
   void OnLiveBehind() { limit_ = std::max(kMinLimit, limit_ / 2.0); }
   void OnSent(Sensor sensor, std::uint64_t number, SteadyTime now) {
     UnderWay(sensor)[number] = now;

@@ -30,7 +30,7 @@ struct ConvertRequest {
   /// itself has, of a reconstruction or of the ground's feedback.
   std::vector<StampedPose> poses;
   DepthDefect defect = DepthDefect::kNone;  ///< Done to each depth image.
-  bool sync = false;  ///< What is written is on the disk when it returns: what it replaces may go.
+  bool sync = false;  ///< All is on the disk when it returns, so that the old one may go.
   std::function<void(double fraction)> progress;
   std::stop_token stop;
 };

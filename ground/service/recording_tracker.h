@@ -37,7 +37,7 @@ struct RecordingProgress {
   /// What came too late for the reconstruction has files of its own, so that each is in the order
   /// of time.
   std::vector<std::filesystem::path> late_files{};
-  std::uint64_t late_frames = 0;  ///< Of both streams, in these; in the next two as well.
+  std::uint64_t late_frames = 0;  ///< Counts both streams, in these; the next two have them, too.
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
   std::uint64_t bytes = 0;

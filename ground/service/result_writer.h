@@ -34,7 +34,7 @@ class ResultWriter {
  public:
   /// Returns what is known of a session's frames by now.
   using CountersSource = std::function<SessionCounters(std::uint64_t session)>;
-  /// What is called after each scan, whatever became of its results.
+  /// These are called after each scan, whatever became of its results.
   struct Handlers {
     /// Gets the scan once the results of the live model are there.
     std::function<void(std::unique_ptr<LiveScan>)> written;

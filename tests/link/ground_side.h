@@ -61,7 +61,7 @@ class GroundSide {
     return changed_.wait_for(lock, kLinkPatience,
                              [&]() REQUIRES(mutex_) { return depth_.size() >= count; });
   }
-  /// Those that came behind their place.
+  /// Waits for frames that come behind their place.
   bool AwaitLateDepth(std::size_t count) {
     MutexLock lock(mutex_);
     return changed_.wait_for(lock, kLinkPatience,
