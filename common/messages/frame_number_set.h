@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -8,6 +9,12 @@
 #include "common/messages/messages.h"
 
 namespace isotherm {
+
+/// Returns whether `number` is in one of `ranges`, which are ascending.
+inline bool IsIn(std::uint64_t number, const std::vector<FrameRange>& ranges) {
+  const auto range = std::ranges::lower_bound(ranges, number, {}, &FrameRange::last);
+  return range != ranges.end() && range->first <= number;
+}
 
 /// Holds which frame numbers of one stream were seen. size() + missing() = next(), always.
 /// Memory is bounded: when there are too many holes, the oldest is given up, its frames stay

@@ -9,6 +9,7 @@
 #include "common/base/log.h"
 #include "common/base/pause.h"
 #include "common/base/status.h"
+#include "common/messages/frame_number_set.h"
 
 namespace isotherm {
 namespace {
@@ -156,9 +157,8 @@ void Backfill::Settle(SteadyTime now) {
 }
 
 bool Backfill::IsWanted(Sensor sensor, std::uint64_t number) const {
-  const std::vector<FrameRange>& ranges = wanted_[static_cast<std::size_t>(sensor)];
-  const auto range = std::ranges::lower_bound(ranges, number, {}, &FrameRange::last);
-  return range != ranges.end() && range->first <= number && !window_.IsUnderWay(sensor, number);
+  return IsIn(number, wanted_[static_cast<std::size_t>(sensor)]) &&
+         !window_.IsUnderWay(sensor, number);
 }
 
 std::optional<Backfill::Target> Backfill::FindTarget() const {

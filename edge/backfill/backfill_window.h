@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/frame/frame.h"
+#include "common/messages/frame_number_set.h"
 #include "common/messages/messages.h"
 #include "common/time/time_types.h"
 
@@ -81,10 +82,6 @@ class BackfillWindow {
   bool IsFull() const { return static_cast<double>(under_way()) >= limit_; }
   std::map<std::uint64_t, SteadyTime>& UnderWay(Sensor sensor) {
     return under_way_[static_cast<std::size_t>(sensor)];
-  }
-  static bool IsIn(std::uint64_t number, const std::vector<FrameRange>& ranges) {
-    const auto range = std::ranges::lower_bound(ranges, number, {}, &FrameRange::last);
-    return range != ranges.end() && range->first <= number;
   }
 
   const std::size_t max_frames_;

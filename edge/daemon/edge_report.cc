@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/messages/backlog.h"
 #include "common/messages/feedback_text.h"
 #include "common/recording/clock_record.h"
 #include "common/recording/disk_time.h"
@@ -73,8 +74,7 @@ std::string OldText(const EdgeSituation& situation) {
 /// "ground lacks 640 frames", which the recording has; nothing while no more than usual are on
 /// their way.
 std::string LackingText(const EdgeStatus& status) {
-  constexpr std::uint64_t kUsual = 100;
-  if (status.spool_frames <= kUsual) return {};
+  if (!HasBacklog(status)) return {};
   return fmt::format("ground lacks {} frames", status.spool_frames);
 }
 

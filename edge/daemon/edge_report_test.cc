@@ -212,6 +212,15 @@ TEST_F(EdgeReportTest, F28OldAdviceIsSaid) {
   EXPECT_THAT(StatusLine(situation), Not(HasSubstr("OLD"))) << "nobody waits for any";
 }
 
+TEST_F(EdgeReportTest, F25WhatTheGroundLacksIsSaidOnceItIsMoreThanUsual) {
+  EdgeSituation situation = Scanning();
+  situation.status.spool_frames = 100;
+  EXPECT_THAT(StatusLine(situation), Not(HasSubstr("lacks")));
+  situation.status.spool_frames = 640;
+  EXPECT_THAT(StatusLine(situation), HasSubstr("ground lacks 640 frames"));
+  EXPECT_THAT(Narrow(situation), HasSubstr("ground lacks 640 frames"));
+}
+
 TEST_F(EdgeReportTest, F41HowLongTheDiskLastsIsSaidWhileAllIsWell) {
   EdgeSituation situation = Scanning();
   EXPECT_THAT(StatusLine(situation), Not(HasSubstr("disk")));

@@ -8,6 +8,7 @@
 
 #include "common/base/log.h"
 #include "common/base/service.h"
+#include "common/messages/backlog.h"
 #include "common/messages/feedback_text.h"
 #include "ground/subscriber/clock_watch.h"
 
@@ -36,8 +37,6 @@ std::uint64_t Dropped(const StreamStatus& stream) {
 constexpr double kBytesPerGb = 1e9;
 /// A hand that follows advice of so long ago has moved on. Not tuned.
 constexpr double kOldFeedback_s = 1.0;
-/// Fewer frames are usually on their way, or wait for their turn.
-constexpr std::uint64_t kFramesUnderWay = 100;
 /// The rig keeps this in reserve at most: there its recording ends (spool.expert.reserve_mb).
 constexpr double kRigDiskEnds_gb = 1.0;
 /// A recording of ten minutes and the reserve take this much.
@@ -80,7 +79,7 @@ void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) 
   if (situation.edge) {
     const std::uint64_t dropped = Dropped(situation.edge->depth) + Dropped(situation.edge->thermal);
     if (dropped > 0) parts.push_back(fmt::format("dropped by the rig {}", dropped));
-    if (situation.edge->spool_frames > kFramesUnderWay) {
+    if (HasBacklog(*situation.edge)) {
       parts.push_back(
           fmt::format("{} frames to come from the rig's recording", situation.edge->spool_frames));
     }

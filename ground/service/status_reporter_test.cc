@@ -143,6 +143,14 @@ TEST(StatusReporterTest, F28AdviceThatIsOldWhenItArrivesIsSaid) {
   EXPECT_THAT(StatusText(situation), HasSubstr(" | advice is 2.3 s old when it reaches the rig"));
 }
 
+TEST(StatusReporterTest, F25WhatIsStillToComeIsSaid) {
+  GroundSituation situation = Scanning();
+  situation.edge.emplace().spool_frames = 100;
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("to come")));
+  situation.edge->spool_frames = 1180;
+  EXPECT_THAT(StatusText(situation), HasSubstr("1180 frames to come from the rig's recording"));
+}
+
 TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {
   GroundSituation situation = Scanning();
   situation.edge = EdgeStatus();

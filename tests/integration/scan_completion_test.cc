@@ -31,8 +31,8 @@ class ScanCompletionTest : public ::testing::Test {
     EXPECT_TRUE(ImportDataset(import));
     std::filesystem::create_directories(scan_);
   }
-  /// Writes those frames of the whole recording that `is_wanted` says into `file`; frames that were
-  /// counted.
+  /// Writes those frames of the whole recording that `is_wanted` says into `file`, and counts them.
+  /// Returns how many.
   std::uint64_t Write(const std::filesystem::path& file,
                       const std::function<bool(std::uint64_t depth_frame)>& is_wanted) {
     const auto reader = RecordingReader::Open(whole_).value();
@@ -48,6 +48,7 @@ class ScanCompletionTest : public ::testing::Test {
                                              : writer->Write(thermal->frame, thermal->arrival);
       EXPECT_TRUE(status.ok()) << status.message();
       ++written;
+      ++(depth != nullptr ? recording_.depth_frames : recording_.thermal_frames);
     }
     EXPECT_TRUE(writer->Close().ok());
     return written;
@@ -60,10 +61,9 @@ class ScanCompletionTest : public ::testing::Test {
     recording_.path = scan_ / "scan.mcap";
     recording_.files = {recording_.path};
     recording_.late_files = {scan_ / "scan-late.mcap"};
-    const std::uint64_t in_time =
-        Write(recording_.path, [&](auto number) { return !in_outage(number); });
+    recording_.depth_frames = recording_.thermal_frames = 0;
+    Write(recording_.path, [&](auto number) { return !in_outage(number); });
     recording_.late_frames = Write(recording_.late_files.front(), in_outage);
-    recording_.depth_frames = in_time + recording_.late_frames;
     recording_.closed = true;
   }
   Result<std::string> Complete() {
@@ -71,7 +71,12 @@ class ScanCompletionTest : public ::testing::Test {
                          .folder = scan_,
                          .recording = recording_,
                          .describe = [](Json& stats) { stats["link"]["depth"]["late"] = 7; },
-                         .go_on = [this] { ++steps_; },
+                         .go_on =
+                             [this] {
+                               ++steps_;
+                               if (stops_behind_merging_ && !std::filesystem::exists(Late()))
+                                 stop_.request_stop();
+                             },
                          .stop = stop_.get_token()});
   }
   static std::string Content(const std::filesystem::path& file) {
@@ -80,12 +85,15 @@ class ScanCompletionTest : public ::testing::Test {
     return content.str();
   }
 
+  std::filesystem::path Late() const { return recording_.late_files.front(); }
+
   const testing::TemporaryDirectory folder_;
   const std::filesystem::path whole_ = folder_.path() / "whole.mcap";
   const std::filesystem::path scan_ = folder_.path() / "scan";
   GroundOptions options_;
   RecordingProgress recording_;
   std::stop_source stop_;
+  bool stops_behind_merging_ = false;
   int steps_ = 0;
 };
 
@@ -131,7 +139,7 @@ TEST_F(ScanCompletionTest, AFewFramesAreOnlyRecorded) {
   std::filesystem::remove_all(scan_);
   std::filesystem::create_directories(scan_);
   Record(40, 41);
-  recording_.depth_frames = 100 * recording_.late_frames;
+  recording_.late_frames = 1;  // Of more than a hundred.
   const Result<std::string> told = Complete();
   ASSERT_TRUE(told) << told.error().message();
   EXPECT_THAT(*told, HasSubstr("do without"));
@@ -147,6 +155,32 @@ TEST_F(ScanCompletionTest, WhenItIsToldToStopBothFilesStayAsTheyWere) {
   EXPECT_FALSE(Complete());
   EXPECT_TRUE(Content(recording_.path) == before);
   EXPECT_TRUE(Content(recording_.late_files.front()) == late);
+}
+
+TEST_F(ScanCompletionTest, WhenItIsToldToStopLaterTheRecordingIsWholeAndTheResultsAreAsTheyWere) {
+  Record(15, 30);
+  std::ofstream(scan_ / "stats.json") << "of the live model";
+  stops_behind_merging_ = true;
+  const Result<std::string> told = Complete();
+  ASSERT_FALSE(told);
+  EXPECT_THAT(told.error().message(), HasSubstr("is complete, the results are not made anew"));
+  EXPECT_FALSE(std::filesystem::exists(Late()));
+  EXPECT_EQ(Content(scan_ / "stats.json"), "of the live model");
+  const auto reader = RecordingReader::Open(recording_.path).value();
+  EXPECT_EQ(reader->info().messages_by_topic.at("/depth") +
+                reader->info().messages_by_topic.at("/thermal"),
+            recording_.depth_frames + recording_.thermal_frames);
+}
+
+TEST_F(ScanCompletionTest, AFileOfWhichNotAllCanBeReadIsNotReplaced) {
+  Record(15, 30);
+  ++recording_.depth_frames;  // The recorder counted one more.
+  const std::string before = Content(recording_.path);
+  const Result<std::string> told = Complete();
+  ASSERT_FALSE(told);
+  EXPECT_THAT(told.error().message(), HasSubstr("can be read back"));
+  EXPECT_TRUE(Content(recording_.path) == before);
+  EXPECT_TRUE(std::filesystem::exists(Late()));
 }
 
 TEST_F(ScanCompletionTest, AFileThatIsGoneIsSaidAndTheOtherStays) {
