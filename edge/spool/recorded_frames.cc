@@ -77,7 +77,7 @@ void RecordedFrames::ForgetRest(Sensor sensor, std::uint64_t number,
   MutexLock lock(mutex_);
   if (files_.empty() || files_.back() == file) return;
   Stream& stream = streams_[static_cast<std::size_t>(sensor)];
-  const auto next_file = std::ranges::find_if(stream.marks, [&](const Mark& mark) {
+  const auto next_file = std::ranges::find_if(stream.marks, [&](const Mark& mark) REQUIRES(mutex_) {
     return mark.number > number && files_[mark.file] != file;
   });
   Cut({number, next_file == stream.marks.end() ? kLastNumber : next_file->number - 1}, stream);
@@ -86,7 +86,8 @@ void RecordedFrames::ForgetRest(Sensor sensor, std::uint64_t number,
 void RecordedFrames::ForgetAll(Sensor sensor, const std::filesystem::path& file) {
   MutexLock lock(mutex_);
   Stream& stream = streams_[static_cast<std::size_t>(sensor)];
-  const auto is_in_file = [&](const Mark& mark) { return files_[mark.file] == file; };
+  const auto is_in_file = [&](const Mark& mark)
+                              REQUIRES(mutex_) { return files_[mark.file] == file; };
   const auto first = std::ranges::find_if(stream.marks, is_in_file);
   const auto end = std::find_if_not(first, stream.marks.end(), is_in_file);
   if (first == end) return;
