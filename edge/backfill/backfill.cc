@@ -92,10 +92,10 @@ void Backfill::Run(const std::stop_token& stop) {
 bool Backfill::Step() {
   if (settled_) return false;
   const SteadyTime now = parts_.clock.SteadyNow();
-  if (now >= next_look_) {
+  // Asked before the receipt: what was captured last is then known when it is counted what lacks.
+  const bool source_has_ended = source_ended_;
+  if (now >= next_look_ || source_has_ended != is_ending_) {
     next_look_ = now + kLookInterval;
-    // Before the receipt: what was captured last is then known when it is counted what is lacking.
-    const bool source_has_ended = source_ended_;
     if (const std::optional<Receipt> receipt = parts_.publisher.receipt())
       TakeReceipt(*receipt, now);
     if (source_has_ended) Settle(now);
