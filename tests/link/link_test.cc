@@ -220,6 +220,8 @@ TEST_F(LinkTest, ReceiptsGoOnWhenAStreamHasEnded) {
     before = age;
   }
   EXPECT_EQ(receipts, 3) << "three in a second and a half, when all is well";
+  // The thread sanitizer does not see the middleware's lock between a receipt and the reader's end.
+  ground->Stop();
 }
 
 TEST_F(LinkTest, ARestartedEdgeIsANewSession) {
