@@ -39,12 +39,12 @@ constexpr Nanoseconds kIdleInterval = 100ms;
 
 /// Once it has arrived, a backfilled frame is a frame like any other, only late.
 template <typename Message>
-Message Content(Message&& message) {
-  return std::move(message);
+Message ContentOf(Received<Message>&& received) {
+  return std::move(received.message);
 }
 template <typename Frame>
-Frame Content(Backfilled<Frame>&& backfilled) {
-  return std::move(backfilled.frame);
+Frame ContentOf(Received<Backfilled<Frame>>&& received) {
+  return std::move(received.message.frame);
 }
 
 class DdsSubscriber final : public Subscriber {
@@ -218,9 +218,9 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
   return reader->Take(
       [this, reader](Received<Message>&& received) {
         if (!IsFollowed(received.edge_id)) return;
+        const PeerHandle peer = peers_.Identify(*reader, received.writer);
         // Comes back in OnAdmitted, now or later, if it is the rig's.
-        gate_.Add(peers_.Identify(*reader, received.writer),
-                  {.content = Content(std::move(received.message)), .arrival = clock_.Now()},
+        gate_.Add(peer, {.content = ContentOf(std::move(received)), .arrival = clock_.Now()},
                   clock_.SteadyNow());
       },
       max_samples);

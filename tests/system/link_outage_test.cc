@@ -128,6 +128,7 @@ class LinkOutageTest : public TwoHostsTest {
     more.emplace_back("--wait-for-ground");
     StartEdge(seconds, edge_profile, more);
     ASSERT_TRUE(ground().WaitForOutput("scan started", kPatience)) << Said();
+    ASSERT_TRUE(AwaitGroundFolder()) << Said();
     ASSERT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
   }
   void Start(int seconds, std::vector<std::string> more = {}) {
@@ -152,6 +153,21 @@ class LinkOutageTest : public TwoHostsTest {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return true;
+  }
+  /// The folder is made after the beginning of the scan is said.
+  bool AwaitGroundFolder() const {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!std::filesystem::exists(results_) || !HasFolder()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return true;
+  }
+  bool HasFolder() const {
+    for (const auto& entry : std::filesystem::directory_iterator(results_)) {
+      if (entry.is_directory()) return true;
+    }
+    return false;
   }
   /// Returns the folder of the only scan.
   std::filesystem::path GroundFolder() const {
