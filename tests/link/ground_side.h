@@ -23,9 +23,9 @@ class GroundSide {
     SubscriberOptions options;
     options.edge_id = "test-edge";
     SubscriberHandlers handlers;
-    handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
-    handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
-    handlers.late_depth = [this](ReceivedDepth item) { Take(*item.encoded, &late_depth_); };
+    handlers.depth = [this](const ReceivedDepth& item) { Take(*item.encoded, &depth_); };
+    handlers.thermal = [this](const ReceivedThermal& item) { Take(*item.encoded, &thermal_); };
+    handlers.late_depth = [this](const ReceivedDepth& item) { Take(*item.encoded, &late_depth_); };
     handlers.external_odometry = [this](const ExternalOdometrySample& sample) {
       Update([&]() REQUIRES(mutex_) { external_odometry_.push_back(sample.number); });
     };

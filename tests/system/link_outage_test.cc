@@ -119,7 +119,7 @@ class LinkOutageTest : public TwoHostsTest {
                                           "--set",
                                           "link.expert.linger_s=30"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    edge_process_.emplace(On(edge_, profile, EdgeDaemon(), std::move(arguments)));
+    edge_process_.emplace(On(edge_, profile, EdgeDaemon(), arguments));
   }
   /// Starts both daemons. Returns when frames have arrived.
   void Start(int seconds, const std::string& edge_profile, const std::string& ground_profile,
