@@ -255,12 +255,17 @@ bool Backfill::IsBehind(Sensor sensor, const StreamPublished& sent, const Stream
 }
 
 bool Backfill::MayDisturb(SteadyTime now) {
+  // Who reads is asked the middleware, which is too much for each frame.
+  if (now < may_disturb_until_ && !parts_.is_live_behind()) return true;
   const PublisherStats link = parts_.publisher.stats();
   const bool live_is_behind =
       !source_ended_ &&
       (parts_.is_live_behind() || IsBehind(Sensor::kDepth, link.depth, receipt_->depth, now) ||
        IsBehind(Sensor::kThermal, link.thermal, receipt_->thermal, now));
-  if (!live_is_behind && link.takes_backfill) return true;
+  if (!live_is_behind && link.takes_backfill) {
+    may_disturb_until_ = now + kLookInterval;
+    return true;
+  }
   window_.OnLiveBehind();
   retry_at_ = now + kBehindInterval;
   return false;

@@ -115,6 +115,7 @@ class Backfill {
   Wanted wanted_;                                      ///< By the newest receipt.
   SteadyTime next_look_{};                             ///< At the receipt.
   SteadyTime retry_at_{};                              ///< The file has not got what is wanted.
+  SteadyTime may_disturb_until_{};                     ///< As of the newest look at the link.
   bool reported_ = false;
   int failures_ = 0;  ///< To open the file, in a row.
   /// Tells of each stream what was published last, by Sensor, and since when.

@@ -11,11 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "common/messages/frame_number_set.h"
 #include "common/recording/recording.h"
 #include "common/testing/temporary_directory.h"
 #include "common/testing/test_seed.h"
-#include "edge/publisher/publisher.h"
+#include "edge/backfill/testing/simulated_link.h"
 
 namespace isotherm {
 namespace {
@@ -23,127 +22,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr CaptureTime kStart{1'700'000'000s};
-constexpr std::uint64_t kSession = 7;
+constexpr std::uint64_t kSession = SimulatedLink::kSession;
 constexpr std::array<Sensor, 2> kSensors = {Sensor::kDepth, Sensor::kThermal};
 constexpr Nanoseconds kPeriod = 25ms;  // Of both streams.
-
-std::size_t Index(Sensor sensor) { return static_cast<std::size_t>(sensor); }
-
-/// A link and a ground behind it, in virtual time: frames arrive after a delay or never, receipts
-/// tell of them.
-class SimulatedLink final : public Publisher {
- public:
-  SimulatedLink(const Clock& clock, std::uint64_t seed) : clock_(clock), random_(seed) {}
-
-  /// Sends a frame as it is captured.
-  void SendLive(Sensor sensor, std::uint64_t number) {
-    next_published_[Index(sensor)] = number + 1;
-    Carry(sensor, number);
-  }
-  void Deliver() {
-    const SteadyTime now = clock_.SteadyNow();
-    std::erase_if(under_way_, [&](const Frame& frame) {
-      if (frame.arrival > now) return false;
-      if (!has_.at(Index(frame.sensor)).Add(frame.number)) ++duplicates;
-      ++since_receipt_;
-      return true;
-    });
-    constexpr int kFramesPerReceipt = 8;
-    if (!carries || !ground_is_there) return;
-    if (now < next_receipt_ && since_receipt_ < kFramesPerReceipt) return;
-    since_receipt_ = 0;
-    next_receipt_ = now + 200ms;
-    Receipt receipt;
-    receipt.session = kSession;
-    receipt.depth = ReceiptOf(Sensor::kDepth);
-    receipt.thermal = ReceiptOf(Sensor::kThermal);
-    if (receipt.depth.next + receipt.thermal.next == 0) return;
-    receipt_ = receipt;
-    receipt_at_ = now;
-  }
-  /// The ground is started again, and knows nothing.
-  void RestartGround() { has_ = std::array<FrameNumberSet, 2>(); }
-
-  std::uint64_t Missing(Sensor sensor, std::uint64_t captured) const {
-    return captured - has_.at(Index(sensor)).size();
-  }
-
-  // What the test sets.
-  bool carries = true;
-  bool ground_is_there = true;
-  double loss = 0.0;
-  Nanoseconds delay = 5ms;
-  std::optional<std::uint64_t> refused;  // A number that the ground never takes, of both streams.
-  // What it counts.
-  std::uint64_t duplicates = 0;
-  std::uint64_t backfilled = 0;
-
-  Result<bool> Backfill(const EncodedDepthFrame& frame) override {
-    return SendAgain(Sensor::kDepth, frame.header);
-  }
-  Result<bool> Backfill(const EncodedThermalFrame& frame) override {
-    return SendAgain(Sensor::kThermal, frame.header);
-  }
-  PublisherStats stats() const override {
-    PublisherStats stats;
-    stats.depth.next_frame_number = next_published_[0];
-    stats.thermal.next_frame_number = next_published_[1];
-    if (receipt_) stats.receipt_age = clock_.SteadyNow() - receipt_at_;
-    // The middleware notices late that somebody is gone.
-    const bool is_noticed = !receipt_ || clock_.SteadyNow() - receipt_at_ > 10s;
-    stats.ground_present = stats.takes_backfill = (carries && ground_is_there) || !is_noticed;
-    return stats;
-  }
-  std::optional<Receipt> receipt() const override { return receipt_; }
-
-  // Not used by backfill.
-  void Run(std::stop_token, const PublisherHandlers&) override {}
-  bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status BeginSession(const RigDescription&) override { return OkStatus(); }
-  Status Announce(const RigDescription&) override { return OkStatus(); }
-  Status Publish(const EncodedDepthFrame&, std::stop_token) override { return OkStatus(); }
-  Status Publish(const EncodedThermalFrame&, std::stop_token) override { return OkStatus(); }
-  Status Publish(const ExternalOdometrySample&, std::stop_token) override { return OkStatus(); }
-  Status Publish(EdgeStatus) override { return OkStatus(); }
-  Status Answer(const CommandResult&) override { return OkStatus(); }
-  bool Drain(Nanoseconds) override { return true; }
-  void SetPolicy(PublishPolicy) override {}
-
- private:
-  struct Frame {
-    Sensor sensor{};
-    std::uint64_t number = 0;
-    SteadyTime arrival;
-  };
-  Result<bool> SendAgain(Sensor sensor, const FrameHeader& header) {
-    EXPECT_EQ(header.session, kSession);
-    ++backfilled;
-    Carry(sensor, header.frame_number);
-    return false;
-  }
-  void Carry(Sensor sensor, std::uint64_t number) {
-    const bool is_lost = number == refused || !carries || !ground_is_there ||
-                         std::uniform_real_distribution(0.0, 1.0)(random_) < loss;
-    if (!is_lost) under_way_.push_back({sensor, number, clock_.SteadyNow() + delay});
-  }
-  StreamReceipt ReceiptOf(Sensor sensor) const {
-    const FrameNumberSet& has = has_.at(Index(sensor));
-    return {.next = has.next(),
-            .handled = has.next(),
-            .received = has.size(),
-            .holes = has.NewestHoles(kMaxHoles)};
-  }
-
-  const Clock& clock_;
-  std::mt19937_64 random_;
-  std::vector<Frame> under_way_;
-  std::array<FrameNumberSet, 2> has_;
-  std::array<std::uint64_t, 2> next_published_{};
-  std::optional<Receipt> receipt_;
-  SteadyTime receipt_at_{};
-  SteadyTime next_receipt_{};
-  int since_receipt_ = 0;
-};
 
 /// A recording of both streams, and what sends of it what the ground lacks.
 class BackfillTest : public ::testing::Test {
@@ -165,7 +46,7 @@ class BackfillTest : public ::testing::Test {
   }
   template <typename Frame>
   void Write(Sensor sensor, Frame frame) {
-    const std::uint64_t number = next_.at(Index(sensor));
+    const std::uint64_t number = next_.at(SensorIndex(sensor));
     frame.header = {.session = kSession,
                     .frame_number = number,
                     .capture_time = kStart + kPeriod * static_cast<std::int64_t>(number)};
@@ -179,7 +60,7 @@ class BackfillTest : public ::testing::Test {
     depth.depth_scale = 1000.0;
     Write(Sensor::kDepth, depth);
     Write(Sensor::kThermal, EncodedThermalFrame());
-    for (const Sensor sensor : kSensors) link_->SendLive(sensor, next_.at(Index(sensor))++);
+    for (const Sensor sensor : kSensors) link_->SendLive(sensor, next_.at(SensorIndex(sensor))++);
     Pass(kPeriod);
   }
   void Pass(Nanoseconds time) {
@@ -336,7 +217,7 @@ TEST_F(BackfillTest, FramesThatTheRecordingDoesNotHaveAfterAllStopNoOthers) {
   // The disk has taken these and lost them.
   for (int i = 0; i < 40; ++i) {
     for (const Sensor sensor : kSensors) {
-      const std::uint64_t number = next_.at(Index(sensor))++;
+      const std::uint64_t number = next_.at(SensorIndex(sensor))++;
       recorded_->Add(sensor, number, kStart + kPeriod * static_cast<std::int64_t>(number));
     }
     Pass(kPeriod);

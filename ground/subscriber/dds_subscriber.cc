@@ -1,25 +1,12 @@
-#include "ground/subscriber/subscriber.h"
+#include "ground/subscriber/dds_subscriber.h"
 
 #include <algorithm>
-#include <utility>
+#include <memory>
+#include <optional>
 #include <variant>
-#include <vector>
 
 #include "common/base/host_name.h"
 #include "common/base/log.h"
-#include "common/base/mutex.h"
-#include "common/transport/endpoints.h"
-#include "ground/subscriber/clock_comparison.h"
-#include "ground/subscriber/clock_watch.h"
-#include "ground/subscriber/followed_rig.h"
-#include "ground/subscriber/ground_endpoints.h"
-#include "ground/subscriber/peer_table.h"
-#include "ground/subscriber/rig_gate.h"
-#include "ground/subscriber/rig_watch.h"
-#include "ground/subscriber/session_history.h"
-#include "ground/subscriber/session_tracker.h"
-#include "ground/subscriber/stream_receiver.h"
-#include "ground/subscriber/stream_refusals.h"
 
 namespace isotherm {
 namespace {
@@ -47,85 +34,7 @@ Frame ContentOf(Received<Backfilled<Frame>>&& received) {
   return std::move(received.message.frame);
 }
 
-class DdsSubscriber final : public Subscriber {
- public:
-  DdsSubscriber(const Clock& clock, const SubscriberOptions& options, SubscriberHandlers handlers);
-
-  Status Open(const Participant& participant);
-
-  void Run(std::stop_token stop) override;
-  Status Publish(const Feedback& feedback) override;
-  Result<std::uint64_t> Send(Command command) override;
-  SubscriberStats stats() const override;
-  SessionCounters counters(std::uint64_t session) const override;
-  const RefusalCounter& refusals() const override { return refusals_.all; }
-
- private:
-  /// Takes some of what has arrived; false if there was nothing.
-  bool TakeRound();
-  int TakeMessages();
-  /// Keeps the descriptions of the rig that have arrived, until the frames before them were taken.
-  int TakeDescriptions();
-  void AdmitDescriptions();
-  /// Hands what has arrived at `reader` to the gate; samples of other rigs are only counted.
-  template <typename Message>
-  int TakeSamples(Reader<Message>* reader, int max_samples);
-  /// Does what is due: deliveries, receipts, closed sessions, statistics.
-  void Housekeep();
-  void CloseSessions(SteadyTime now);
-  /// Keeps the counters of the newest session and of the one before, as they are now.
-  void KeepCounters();
-  void SendReceipt(SteadyTime now);
-  Nanoseconds TimeToNextDuty(SteadyTime now) const;
-  void OnPeer(const Received<Hello>& peer);
-  // What the gate lets through: the lambda that the constructor gives it calls one of these.
-  void OnAdmitted(const RigDescription& rig, CaptureTime arrival);
-  void OnAdmitted(const EdgeStatus& status, CaptureTime arrival);
-  void OnAdmitted(const ExternalOdometrySample& sample, CaptureTime arrival);
-  void OnAdmitted(const CommandResult& result, CaptureTime arrival);
-  void OnAdmitted(EncodedDepthFrame&& frame, CaptureTime arrival) {
-    OnFrame(std::move(frame), &depth_, arrival);
-  }
-  void OnAdmitted(EncodedThermalFrame&& frame, CaptureTime arrival) {
-    OnFrame(std::move(frame), &thermal_, arrival);
-  }
-  template <typename ReceivedFrame>
-  void OnFrame(typename StreamReceiver<ReceivedFrame>::Encoded&& frame,
-               StreamReceiver<ReceivedFrame>* receiver, CaptureTime arrival);
-  /// Finds out who is there, who is the rig, and who only says so.
-  void LookAround(SteadyTime now);
-  /// True for samples of the rig that is followed; counts those of others.
-  bool IsFollowed(const std::string& edge_id);
-
-  const Clock& clock_;
-  const SubscriberOptions options_;
-  const SubscriberHandlers handlers_;
-  const Hello own_hello_;
-  FollowedRig followed_;
-  StreamRefusals refusals_;
-  GroundEndpoints ends_;
-
-  // Of the thread in Run().
-  StreamReceiver<ReceivedDepth> depth_;
-  StreamReceiver<ReceivedThermal> thermal_;
-  PeerTable peers_;
-  RigGate gate_;
-  std::vector<std::pair<PeerHandle, RigSample>> descriptions_;  ///< Not yet at the gate.
-  int turns_behind_frames_ = 0;  ///< For so many turns they have waited.
-  RigWatch watch_{gate_};
-  SteadyTime look_due_{};
-  SessionTracker sessions_;
-  std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
-  ClockComparison clock_comparison_;
-  ClockWatch clock_watch_;
-  SteadyTime receipt_due_{};
-  int frames_since_receipt_ = 0;
-
-  mutable Mutex mutex_;
-  std::uint64_t next_command_ GUARDED_BY(mutex_);
-  SubscriberStats stats_ GUARDED_BY(mutex_);
-  SessionHistory history_ GUARDED_BY(mutex_);
-};
+}  // namespace
 
 DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& options,
                              SubscriberHandlers handlers)
@@ -401,8 +310,6 @@ SessionCounters DdsSubscriber::counters(std::uint64_t session) const {
   MutexLock lock(mutex_);
   return history_.Get(session);
 }
-
-}  // namespace
 
 Result<std::unique_ptr<Subscriber>> Subscriber::Create(const Participant& participant,
                                                        const Clock& clock,
