@@ -6,7 +6,7 @@
 
 #include "common/base/noise.h"
 #include "common/frame/frame.h"
-#include "common/simulation/gaussian_blur.h"
+#include "common/frame/gaussian_blur.h"
 
 namespace isotherm {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "common/base/noise.h"
 #include "common/frame/frame.h"
-#include "common/simulation/gaussian_blur.h"
+#include "common/frame/gaussian_blur.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_errors.h"

@@ -22,14 +22,6 @@ constexpr double kDriftMemory_s = 4.0;
 // Of the pairs' sum below, a bounded number of terms however long the scan is.
 constexpr std::size_t kMaxVelocities = 1200;
 
-/// The mean of the surface's points.
-Eigen::Vector3d MiddleOfSurface(const ScanViews& views) {
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
-  for (const TexturePoint& point : views.points)
-    p_world += point.p_world / static_cast<double>(views.points.size());
-  return p_world;
-}
-
 /// The velocities less their mean over the part of the motion that they are in.
 std::vector<StampedVelocity> WithoutMeans(std::vector<StampedVelocity> motion, double part_s) {
   const auto part_of =
@@ -49,6 +41,13 @@ std::vector<StampedVelocity> WithoutMeans(std::vector<StampedVelocity> motion, d
 }
 
 }  // namespace
+
+Eigen::Vector3d MiddleOfSurface(const ScanViews& views) {
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
+  for (const TexturePoint& point : views.points)
+    p_world += point.p_world / static_cast<double>(views.points.size());
+  return p_world;
+}
 
 std::vector<StampedVelocity> ImageVelocities(const ScanViews& views) {
   const Eigen::Vector3d p_world = MiddleOfSurface(views);

@@ -10,6 +10,9 @@ namespace isotherm {
 
 struct ScanViews;
 
+/// The mean of the surface's points, metres in the trajectory's world.
+Eigen::Vector3d MiddleOfSurface(const ScanViews& views);
+
 /// How the middle of the scanned surface moves through the thermal image at one time.
 struct StampedVelocity {
   CaptureTime time;

@@ -132,6 +132,7 @@ class PoseViewer {
 
 std::vector<std::uint32_t> ShownByAll(const std::deque<PoseView>& window, std::size_t points) {
   std::vector<std::uint32_t> visible;
+  if (window.empty()) return visible;
   for (std::size_t i = 0; i < points; ++i) {
     if (std::all_of(window.begin(), window.end(),
                     [i](const PoseView& view) { return view.shows[i] != 0; }))
@@ -169,7 +170,8 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
   SurfaceMaps maps;
   for (std::size_t view = 0; view < count; ++view) {
     const StampedThermal& frame = views.frames[view * views.frames.size() / count];
-    const auto T_world_depth = InterpolatePose(views.trajectory, frame.time);
+    const auto T_world_depth =
+        InterpolatePose(views.trajectory, frame.time + FromSeconds(views.delay_s));
     if (!T_world_depth) continue;
     const RigidTransform T_world_thermal = *T_world_depth * views.T_thermal_depth.inverse();
     raycaster.Cast(tsdf, camera, InFirstMap(T_world_thermal), kMinWeight, pool, maps);
@@ -194,9 +196,11 @@ void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool,
   for (StampedThermal& frame : views.frames) {
     if (progress) progress(static_cast<double>(done++) / static_cast<double>(views.frames.size()));
     frame.visible.clear();
-    if (!Covered(views, frame.time, range_s)) continue;
-    const CaptureTime first = frame.time - FromSeconds(range_s);
-    const CaptureTime last = frame.time + FromSeconds(range_s);
+    const CaptureTime time = frame.time + FromSeconds(views.delay_s);
+    if (!Covered(views, time, range_s)) continue;
+    // There is a pose in between however short the range is.
+    const Nanoseconds range = FromSeconds(std::max(range_s, kPoseSpacing_s));
+    const CaptureTime first = time - range, last = time + range;
     while (!window.empty() && window.front().time < first) window.pop_front();
     for (; next < views.trajectory.size() && views.trajectory[next].time <= last; ++next) {
       const StampedPose& pose = views.trajectory[next];

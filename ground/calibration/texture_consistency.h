@@ -32,12 +32,14 @@ struct StampedThermal {
   /// Indices, ascending, of the points that it shows whatever its delay is within the range that
   /// is searched; empty if poses are missing there.
   std::vector<std::uint32_t> visible;
+  std::uint8_t nuc_epoch = 0;  ///< NUCs of the session before it, modulo 256.
 };
 
 /// Holds what a scan offers for finding the delay of its thermal camera.
 struct ScanViews {
   CameraModel thermal_camera;
   RigidTransform T_thermal_depth = RigidTransform::Identity();
+  double delay_s = 0.0;  ///< To be added to the stamps; the delays that are tried are around it.
   std::vector<StampedPose> trajectory;  ///< By time.
   std::vector<TexturePoint> points;  ///< In random order, so that any number of the first will do.
   std::vector<StampedThermal> frames;  ///< By time.

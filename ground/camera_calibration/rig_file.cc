@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "common/base/output_file.h"
-#include "common/base/read_file.h"
-#include "common/options/text_proto.h"
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
+#include "common/rig/rig_calibration_file.h"
 
 namespace isotherm {
 namespace {
-
-constexpr std::uint64_t kMaxRigBytes = 1U << 20;
 
 void AddCovariance(const Eigen::MatrixXd& covariance, CalibrationRecord& record) {
   for (Eigen::Index y = 0; y < covariance.rows(); ++y) {
@@ -111,28 +107,15 @@ void SetPose(const CalibrationReport& report, RigCalibration& rig) {
 
 Status UpdateRigFile(const std::filesystem::path& path, const CalibrationReport& report,
                      const std::vector<std::string>& serials) {
-  RigCalibration rig;
-  std::error_code error;
-  std::optional<std::string> before;
-  if (std::filesystem::exists(path, error)) {
-    const Result<std::string> text = ReadFile(path, kMaxRigBytes);
-    if (!text) return text.error();
-    before = *text;
-    ISOTHERM_RETURN_IF_ERROR(ParseTextProto(*before, path.string(), rig));
-  }
-  for (std::size_t i = 0; i < report.cameras.size(); ++i) {
-    Status status = SetCamera(report, report.cameras[i], serials[i], rig);
-    if (!status.ok()) return status.WithContext(path.string());
-  }
-  if (report.pose) SetPose(report, rig);
-  rig.set_date(report.date);
-  rig.set_method(report.software);
-  rig.set_reprojection_error_px(report.cameras.back().error.rms_px);
-  const std::string text = ToTextProto(rig);
-  // Never write what could not be read again.
-  if (const Result<Rig> read = ParseRigCalibration(text, path.string()); !read) return read.error();
-  if (before) ISOTHERM_RETURN_IF_ERROR(WriteFile(path.string() + ".bak", *before));
-  return WriteFile(path, text);
+  return EditRigFile(path, [&](RigCalibration& rig) {
+    for (std::size_t i = 0; i < report.cameras.size(); ++i)
+      ISOTHERM_RETURN_IF_ERROR(SetCamera(report, report.cameras[i], serials[i], rig));
+    if (report.pose) SetPose(report, rig);
+    rig.set_date(report.date);
+    rig.set_method(report.software);
+    rig.set_reprojection_error_px(report.cameras.back().error.rms_px);
+    return OkStatus();
+  });
 }
 
 }  // namespace isotherm

@@ -11,6 +11,8 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
   AddCalibrateCameraCommands(*calibrate, body);
   AddCalibrateRigCommand(*calibrate, body);
   AddCalibrateTimeCommand(*calibrate, body);
+  AddCalibrateRefineCommand(*calibrate, body);
+  AddCalibrateCheckCommand(*calibrate, body);
 }
 
 }  // namespace isotherm

@@ -103,16 +103,12 @@ struct Change {
 /// Fails if it is not known which delay the stamps contain.
 Result<Change> ChangeOf(const ScanForCalibration& scan, const std::optional<Rig>& rig,
                         double estimate_s) {
-  // The ground records what an edge sent, and the edge knows which delay it added: its
-  // calibration's.
-  if (!scan.applied_delay_s && !rig) {
-    return Err(FailedPrecondition(fmt::format(
-        "the stamps are off by {:+.1f} ms, but this recording was made by the ground, which does "
-        "not know the delay that they contain: name the calibration file that the edge used "
-        "(--rig), or take the edge's own recording",
-        1e3 * estimate_s)));
+  const Result<double> delay_s = DelayInStamps(scan.applied_delay_s, rig);
+  if (!delay_s) {
+    return Err(FailedPrecondition(fmt::format("the stamps are off by {:+.1f} ms, but {}",
+                                              1e3 * estimate_s, delay_s.error().message())));
   }
-  const double applied_s = scan.applied_delay_s.value_or(rig ? rig->thermal_delay_s : 0.0);
+  const double applied_s = *delay_s;
   const double before_s = rig                ? rig->thermal_delay_s
                           : applied_s != 0.0 ? applied_s
                                              : scan.rig.thermal_delay_s;

@@ -56,6 +56,8 @@ void AddScanCommand(CLI::App& app, CommandBody& body);
 
 // Those of `isotherm calibrate`.
 void AddCalibrateTimeCommand(CLI::App& calibrate, CommandBody& body);
+void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body);
+void AddCalibrateCheckCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateCameraCommands(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateRigCommand(CLI::App& calibrate, CommandBody& body);
 

@@ -69,7 +69,11 @@ RgbImage ThermalRendering(const Image<std::uint16_t>& temperature_raw,
     const std::uint16_t raw = temperature_raw.pixels()[i];
     if (raw != 0) celsius.pixels()[i] = scale.Celsius(raw);
   }
-  return Rendering(celsius, RendererOptions(), "apparent temperature", "\u00B0C");
+  return TemperatureRendering(celsius, "apparent temperature");
+}
+
+RgbImage TemperatureRendering(const Image<float>& celsius, const std::string& title) {
+  return Rendering(celsius, RendererOptions(), title, "\u00B0C");
 }
 
 RgbImage DepthRendering(const Image<std::uint16_t>& depth_raw, double depth_scale) {

@@ -1,6 +1,5 @@
 #include "ground/cli/target_arguments.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,11 +10,11 @@
 #include "common/base/output_file.h"
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
-#include "common/time/clock.h"
 #include "ground/camera_calibration/rig_file.h"
 #include "ground/camera_calibration/target.h"
 #include "ground/cli/command.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/cli/today.h"
 #include "ground/json/json.h"
 
 namespace isotherm {
@@ -25,15 +24,6 @@ const std::map<std::string, LensKind>& LensNames() {
   static const std::map<std::string, LensKind> kNames = {
       {"brown-conrady", LensKind::kBrownConrady}};
   return kNames;
-}
-
-/// The day, by the computer's clock, in UTC.
-std::string Today() {
-  const auto day = std::chrono::floor<std::chrono::days>(SystemClock().Now());
-  const std::chrono::year_month_day date{
-      std::chrono::sys_days(std::chrono::duration_cast<std::chrono::days>(day.time_since_epoch()))};
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()),
-                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
 }
 
 Status WriteReport(const CalibrationReport& report, const std::filesystem::path& folder) {

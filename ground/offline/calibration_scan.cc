@@ -18,6 +18,7 @@
 #include "ground/calibration/scan_views.h"
 #include "ground/offline/recorded_frames.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "ground/thermal/nuc_epochs.h"
 
 namespace isotherm {
 namespace {
@@ -75,6 +76,7 @@ class Reader {
   }
 
   void Take(const RecordedThermal& recorded) {
+    const std::uint8_t epoch = EpochOf(recorded.frame);
     if (!recorded.frame.valid || seen_++ % stride_ != 0) return;
     Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded.frame.image);
     if (!image || image->width() != rig_.thermal->width || image->height() != rig_.thermal->height)
@@ -82,7 +84,16 @@ class Reader {
     frames_.push_back({recorded.frame.header.capture_time,
                        std::make_shared<const Image<std::uint16_t>>(std::move(*image)),
                        recorded.frame.scale,
-                       {}});
+                       {},
+                       epoch});
+  }
+
+  std::uint8_t EpochOf(const EncodedThermalFrame& encoded) {
+    ThermalFrame frame;
+    frame.header = encoded.header;
+    frame.seconds_since_nuc = encoded.seconds_since_nuc;
+    frame.valid = encoded.valid;
+    return nuc_epochs_.Follow(frame).epoch;
   }
 
   RecordingReader& reader_;
@@ -90,6 +101,7 @@ class Reader {
   const Rig& rig_;
   const std::uint64_t stride_;
   std::uint64_t seen_ = 0;
+  NucEpochs nuc_epochs_;
   std::vector<StampedThermal> frames_;
 };
 
@@ -104,9 +116,14 @@ Status CheckTracked(const ScanCounts& counts) {
 
 }  // namespace
 
-Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
-                                    const GroundOptions& options, double range_s,
-                                    const std::function<void(double)>& progress) {
+TrackedRecording::~TrackedRecording() = default;
+TrackedRecording::TrackedRecording(TrackedRecording&&) noexcept = default;
+
+ScanModel TrackedRecording::model() const { return pipeline_->model(); }
+
+Result<TrackedRecording> TrackedRecording::Read(const std::filesystem::path& recording,
+                                                const GroundOptions& options,
+                                                const std::function<void(double)>& progress) {
   Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(recording);
   if (!reader) return Err(reader.error());
   const Result<Rig> rig = (*reader)->ReadRig();
@@ -118,18 +135,41 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, depth_only, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-
   Reader frames(**reader, **pipeline, *rig);
-  frames.Run(PartOf(progress, 0.0, kReadFraction));
-  ScanForCalibration scan{{}, *rig, AppliedDelay((*reader)->info())};
-  scan.views.thermal_camera = *rig->thermal;
-  scan.views.T_thermal_depth = *rig->T_thermal_depth;
-  const ScanModel model = (*pipeline)->model();
-  scan.views.frames = frames.TakeFrames();
-  Status fit = CheckTracked(model.counts);
-  if (fit.ok()) {
-    fit = AddSurface(model, kMaxPoints, range_s, scan.views, PartOf(progress, kReadFraction, 1.0));
-  }
+  frames.Run(progress);
+  if (Status fit = CheckTracked((*pipeline)->model().counts); !fit.ok())
+    return Err(fit.WithContext(recording.string()));
+  TrackedRecording tracked;
+  tracked.rig_ = *rig;
+  tracked.applied_delay_s_ = AppliedDelay((*reader)->info());
+  tracked.pipeline_ = std::move(*pipeline);
+  tracked.frames_ = frames.TakeFrames();
+  return tracked;
+}
+
+Result<double> DelayInStamps(std::optional<double> applied_delay_s, const std::optional<Rig>& used) {
+  // The ground records what an edge sent, and the edge knows which delay it added: its
+  // calibration's.
+  if (applied_delay_s) return *applied_delay_s;
+  if (used) return used->thermal_delay_s;
+  return Err(FailedPrecondition(
+      "this recording was made by the ground, which does not know the delay that its stamps "
+      "contain: name the calibration file that the edge used (--rig), or take the edge's own "
+      "recording"));
+}
+
+Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
+                                    const GroundOptions& options, double range_s,
+                                    const std::function<void(double)>& progress) {
+  Result<TrackedRecording> tracked =
+      TrackedRecording::Read(recording, options, PartOf(progress, 0.0, kReadFraction));
+  if (!tracked) return Err(tracked.error());
+  ScanForCalibration scan{{}, tracked->rig(), tracked->applied_delay_s()};
+  scan.views.thermal_camera = *scan.rig.thermal;
+  scan.views.T_thermal_depth = *scan.rig.T_thermal_depth;
+  scan.views.frames = tracked->frames();
+  const Status fit = AddSurface(tracked->model(), kMaxPoints, range_s, scan.views,
+                                PartOf(progress, kReadFraction, 1.0));
   if (!fit.ok()) return Err(fit.WithContext(recording.string()));
   if (progress) progress(1.0);
   return scan;

@@ -1,4 +1,4 @@
-#include "common/simulation/gaussian_blur.h"
+#include "common/frame/gaussian_blur.h"
 
 #include <algorithm>
 #include <cmath>

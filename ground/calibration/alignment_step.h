@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "ground/calibration/texture_alignment.h"
+#include "ground/calibration/thermal_placement.h"
+
+namespace isotherm {
+
+/// Holds the next correction of a placement and of the drift of its poses, and what is certain.
+struct AlignmentStep {
+  PlacementVector placement = PlacementVector::Zero();
+  Eigen::VectorXd drift;
+  double length = 0.0;  ///< Of the placement's step, in standard deviations of the prior.
+  /// Of the whole correction since the prior's, in its units; what the images do not tell keeps the
+  /// prior's variance.
+  PlacementMatrix covariance = PlacementMatrix::Zero();
+  int observed_directions = 0;  ///< Of kPlacementParameters.
+};
+
+/// Holds what is known before the images are looked at, about the placement's correction and the
+/// drift: both are zero, with these standard deviations.
+struct AlignmentPrior {
+  PlacementVector placement_sigma = PlacementVector::Zero();
+  Eigen::VectorXd drift_sigma;
+};
+
+/// Solves the equations together with the prior, after a correction and a drift so far. Samples are
+/// not independent of each other (emissivity, the detector's pattern): how much the gradients of
+/// parts of the scan scatter says how much less they tell. Directions of the placement that the
+/// images tell less than twice as certainly as the prior are left alone: there the result would be
+/// mostly chance. The step is at most one standard deviation of the prior long.
+AlignmentStep SolveAlignment(const AlignmentEquations& equations, const AlignmentPrior& prior,
+                             const PlacementVector& correction, const Eigen::VectorXd& drift);
+
+}  // namespace isotherm

@@ -1,0 +1,435 @@
+#include "ground/calibration/texture_alignment.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/frame/gaussian_blur.h"
+#include "common/radiometry/radiometry.h"
+
+namespace isotherm {
+namespace {
+
+// Parts of the scan that are held out, and whose scatter says how certain the result is: shorter
+// than the knots of the drift.
+constexpr double kPart_s = 0.25;
+constexpr int kHeldOutEvery = 3;
+// As in TextureConsistency: what a sample differs by without any fault of the calibration.
+constexpr double kNoise_k = 0.1;
+constexpr double kMisalignment_px = 0.5;
+// A mean of fewer frames is mostly one frame's noise.
+constexpr double kMinFrames = 8.0, kMinFramesOfEpoch = 4.0;
+// The squared gradient over its squared standard error: noise alone is above it at one of 22,000
+// points (exp(-10), for two directions).
+constexpr double kMinSignificance = 10.0;
+// To each side, for the velocity of a point at a frame's time: from one depth frame to the next.
+constexpr double kHalfBaseline_s = 0.015;
+// How temperatures change with the emission angle has this shape, whatever the material and its
+// temperature: next to nothing up to 40 degrees, then ever faster (Fresnel). Its size is fitted at
+// each point, unless angles hardly differ.
+constexpr double kRefractiveIndex = 1.5;
+constexpr double kMinReflectivitySpread = 0.0001;
+constexpr double kMinDepth_m = 0.05;
+constexpr std::size_t kPointsPerTask = 128;
+
+struct Interpolated {
+  double kelvin = 0.0;
+  Eigen::Vector2d gradient_k_px;
+};
+
+/// Bilinear, with the derivative of just that; nullopt where the image has no value.
+std::optional<Interpolated> InterpolateAt(const Image<std::uint16_t>& image,
+                                          const RadiometricScale& scale,
+                                          const Eigen::Vector2d& pixel) {
+  if (!(pixel.x() >= 1.0 && pixel.y() >= 1.0 && pixel.x() < image.width() - 2 &&
+        pixel.y() < image.height() - 2))
+    return std::nullopt;
+  const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+  const double a = pixel.x() - x, b = pixel.y() - y;
+  const double v00 = image.At(x, y), v10 = image.At(x + 1, y);
+  const double v01 = image.At(x, y + 1), v11 = image.At(x + 1, y + 1);
+  if (v00 == 0.0 || v10 == 0.0 || v01 == 0.0 || v11 == 0.0) return std::nullopt;
+  const double top = v00 + a * (v10 - v00), bottom = v01 + a * (v11 - v01);
+  const Eigen::Vector2d gradient((1.0 - b) * (v10 - v00) + b * (v11 - v01), bottom - top);
+  return Interpolated{scale.Kelvin(top + b * (bottom - top)), scale.kelvin_per_count * gradient};
+}
+
+/// Two unit vectors along a surface with the normal `n`.
+Eigen::Matrix<double, 3, 2> TangentsOf(const Eigen::Vector3d& n) {
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents.col(0) = n.unitOrthogonal();
+  tangents.col(1) = n.cross(tangents.col(0));
+  return tangents;
+}
+
+/// Blurred by known pixels only; pixels without a value stay without.
+Image<std::uint16_t> Blurred(const Image<std::uint16_t>& image, std::span<const float> weights) {
+  Image<float> values(image.width(), image.height()), known(image.width(), image.height());
+  Image<float> scratch;
+  bool all_known = true;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const std::uint16_t value = image.At(x, y);
+      values.At(x, y) = value;
+      known.At(x, y) = value != 0 ? 1.0F : 0.0F;
+      all_known = all_known && value != 0;
+    }
+  }
+  Blur(weights, values, scratch);
+  if (!all_known) Blur(weights, known, scratch);
+  Image<std::uint16_t> blurred(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const float value = all_known ? values.At(x, y) : values.At(x, y) / known.At(x, y);
+      blurred.At(x, y) = image.At(x, y) == 0
+                             ? std::uint16_t{0}
+                             : static_cast<std::uint16_t>(std::lround(std::max(1.0F, value)));
+    }
+  }
+  return blurred;
+}
+
+}  // namespace
+
+/// How one frame sees, at a placement.
+struct TextureAlignment::FrameGeometry {
+  bool is_known = false;
+  RigidTransform T_thermal_world = RigidTransform::Identity();
+  /// A world point's coordinates before the depth camera, and how fast they change with the delay.
+  RigidTransform T_depth_world = RigidTransform::Identity();
+  Eigen::Matrix<double, 3, 4> velocity_depth_world = Eigen::Matrix<double, 3, 4>::Zero();
+  TrajectoryDrift::Place drift;
+};
+
+/// What one frame shows of one point.
+struct TextureAlignment::Sample {
+  double kelvin = 0.0;
+  Eigen::Vector2d gradient_k_m;  ///< Along the surface.
+  /// Where on the surface the pixel of the point lies after a correction, metres per unit.
+  Eigen::Matrix<double, 2, kPlacementParameters> shift;
+  Eigen::Matrix<double, 2, TrajectoryDrift::kPerKnot> drift_shift;  ///< The same by a knot.
+  TrajectoryDrift::Place drift;
+  double pixels_per_metre = 0.0;
+  double reflectivity = 0.0;  ///< Of a dielectric surface seen at this emission angle.
+  int part = 0;
+  std::uint8_t epoch = 0;
+  bool held_out = false;
+};
+
+struct TextureAlignment::Sums {
+  Sums(int parts, int parameters) {
+    equations.information = Eigen::MatrixXd::Zero(parameters, parameters);
+    equations.gradient = Eigen::VectorXd::Zero(parameters);
+    equations.part_gradients.assign(static_cast<std::size_t>(parts), equations.gradient);
+  }
+  void Add(const Sums& other) {
+    AlignmentEquations& to = equations;
+    const AlignmentEquations& from = other.equations;
+    to.information += from.information;
+    for (std::size_t i = 0; i < to.part_gradients.size(); ++i)
+      to.part_gradients[i] += from.part_gradients[i];
+    to.loss += from.loss;
+    to.samples += from.samples;
+    to.seen_points += from.seen_points;
+    to.textured_points += from.textured_points;
+    held_out_squares += other.held_out_squares;
+    held_out_weights += other.held_out_weights;
+  }
+
+  AlignmentEquations equations;
+  double held_out_squares = 0.0, held_out_weights = 0.0;
+  Eigen::MatrixXd slopes;  ///< Scratch.
+};
+
+/// How the temperature changes along the surface at a point, by the frames that are not held out.
+struct TextureAlignment::PointTexture {
+  Eigen::Vector2d gradient_k_m = Eigen::Vector2d::Zero();
+  double mean_slope_k_px = 0.0;  ///< Of single images.
+  bool is_significant = false;   ///< The gradient is above what noise makes.
+};
+
+/// The samples [begin, end) of a point between two NUCs, and what they are compared with: a
+/// temperature and its change with the emission angle, fitted to those that are not held out.
+struct TextureAlignment::Epoch {
+  std::size_t begin = 0, end = 0;
+  double count = 0.0;  ///< Of samples that are not held out; the rest is about them.
+  double kelvin = 0.0, reflectivity = 0.0;  ///< Means.
+  double kelvin_by_reflectivity = 0.0;
+  double reflectivity_squares = 0.0;  ///< Sum over the samples, about the mean.
+  double squares = 0.0;               ///< Of the differences, K^2.
+
+  double Difference(const Sample& sample) const {
+    return sample.kelvin - kelvin -
+           kelvin_by_reflectivity * (sample.reflectivity - reflectivity);
+  }
+};
+
+std::optional<TextureAlignment::PointTexture> TextureAlignment::TextureOf(
+    const std::vector<Sample>& samples) {
+  PointTexture texture;
+  double count = 0.0, squares = 0.0;
+  for (const Sample& sample : samples) {
+    if (sample.held_out) continue;
+    count += 1.0;
+    texture.gradient_k_m += sample.gradient_k_m;
+    texture.mean_slope_k_px += sample.gradient_k_m.norm() / sample.pixels_per_metre;
+    squares += sample.gradient_k_m.squaredNorm();
+  }
+  if (count < kMinFrames) return std::nullopt;
+  texture.gradient_k_m /= count;
+  texture.mean_slope_k_px /= count;
+  const double scatter = squares / count - texture.gradient_k_m.squaredNorm();
+  texture.is_significant =
+      texture.gradient_k_m.squaredNorm() > kMinSignificance * std::max(0.0, scatter) / (count - 1.0);
+  return texture;
+}
+
+void TextureAlignment::Complete(const std::vector<Sample>& samples, Epoch& epoch) {
+  const auto for_each = [&](const auto& add) {
+    for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
+      if (!samples[i].held_out) add(samples[i]);
+    }
+  };
+  for_each([&](const Sample& sample) {
+    epoch.count += 1.0;
+    epoch.kelvin += sample.kelvin;
+    epoch.reflectivity += sample.reflectivity;
+  });
+  if (epoch.count == 0.0) return;
+  epoch.kelvin /= epoch.count;
+  epoch.reflectivity /= epoch.count;
+  epoch.reflectivity_squares = kMinReflectivitySpread * kMinReflectivitySpread * epoch.count;
+  for_each([&](const Sample& sample) {
+    const double reflectivity = sample.reflectivity - epoch.reflectivity;
+    epoch.reflectivity_squares += reflectivity * reflectivity;
+    epoch.kelvin_by_reflectivity += reflectivity * sample.kelvin;
+  });
+  epoch.kelvin_by_reflectivity /= epoch.reflectivity_squares;
+  for_each([&](const Sample& sample) {
+    const double difference_k = epoch.Difference(sample);
+    epoch.squares += difference_k * difference_k;
+  });
+}
+
+std::vector<TextureAlignment::Epoch> TextureAlignment::EpochsOf(
+    const std::vector<Sample>& samples) {
+  std::vector<Epoch> epochs;
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    while (end < samples.size() && samples[end].epoch == samples[begin].epoch) ++end;
+    Epoch epoch{begin, end};
+    Complete(samples, epoch);
+    if (epoch.count >= kMinFramesOfEpoch) epochs.push_back(epoch);
+  }
+  return epochs;
+}
+
+TextureAlignment::TextureAlignment(const ScanViews& views, bool hold_out, ThreadPool& pool)
+    : views_(views), pool_(pool), showing_(views.points.size()) {
+  const double length_s = PartLength(views, kPart_s);
+  for (std::size_t i = 0; i < views.frames.size(); ++i) {
+    const StampedThermal& frame = views.frames[i];
+    const int part = static_cast<int>(ToSeconds(frame.time - views.frames.front().time) / length_s);
+    part_of_frame_.push_back(part);
+    held_out_.push_back(hold_out && part % kHeldOutEvery == kHeldOutEvery - 1);
+    parts_ = std::max(parts_, part + 1);
+    for (const std::uint32_t point : frame.visible)
+      showing_[point].push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+void TextureAlignment::BlurImages(double sigma_px) {
+  const std::vector<double> distances_m = Distances();
+  std::vector<double> known_m;
+  is_blurred_ = sigma_px > 0.0;
+  if (!is_blurred_) return;
+  std::copy_if(distances_m.begin(), distances_m.end(), std::back_inserter(known_m),
+               [](double distance_m) { return distance_m > 0.0; });
+  if (known_m.empty()) return;
+  std::nth_element(known_m.begin(), known_m.begin() + known_m.size() / 2, known_m.end());
+  const double usual_m = known_m[known_m.size() / 2];
+  blurred_.resize(views_.frames.size());
+  pool_.ParallelFor(static_cast<int>(views_.frames.size()), [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    if (!(distances_m[i] > 0.0)) return;
+    blurred_[i] = Blurred(*views_.frames[i].temperature_raw,
+                          GaussianWeights(sigma_px * usual_m / distances_m[i]));
+  });
+}
+
+std::vector<double> TextureAlignment::Distances() const {
+  std::vector<double> distances_m(views_.frames.size());
+  for (std::size_t i = 0; i < views_.frames.size(); ++i) {
+    const StampedThermal& frame = views_.frames[i];
+    const auto T_world_depth =
+        InterpolatePose(views_.trajectory, frame.time + FromSeconds(views_.delay_s));
+    if (frame.visible.empty() || !T_world_depth) continue;
+    const RigidTransform T_thermal_world = views_.T_thermal_depth * T_world_depth->inverse();
+    for (const std::uint32_t point : frame.visible)
+      distances_m[i] += (T_thermal_world * views_.points[point].p_world).z();
+    distances_m[i] /= static_cast<double>(frame.visible.size());
+  }
+  return distances_m;
+}
+
+std::vector<TextureAlignment::FrameGeometry> TextureAlignment::Geometries(
+    const ThermalPlacement& placement, const TrajectoryDrift& drift) const {
+  std::vector<FrameGeometry> geometries(views_.frames.size());
+  for (std::size_t i = 0; i < views_.frames.size(); ++i) {
+    if (views_.frames[i].visible.empty()) continue;
+    const CaptureTime time = views_.frames[i].time + FromSeconds(placement.delay_s);
+    const auto at = InterpolatePose(views_.trajectory, time);
+    const auto before = InterpolatePose(views_.trajectory, time - FromSeconds(kHalfBaseline_s));
+    const auto after = InterpolatePose(views_.trajectory, time + FromSeconds(kHalfBaseline_s));
+    if (!at || !before || !after) continue;
+    FrameGeometry& geometry = geometries[i];
+    geometry.is_known = true;
+    geometry.drift = drift.At(time);
+    const RigidTransform motion = drift.MotionAt(geometry.drift);
+    geometry.T_depth_world = at->inverse() * motion;
+    geometry.T_thermal_world = placement.T_thermal_depth * geometry.T_depth_world;
+    geometry.velocity_depth_world = (after->inverse().matrix() - before->inverse().matrix())
+                                        .topRows<3>() /
+                                    (2.0 * kHalfBaseline_s);
+  }
+  return geometries;
+}
+
+void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::uint32_t>& frames,
+                              const ThermalPlacement& placement, const TrajectoryDrift& drift,
+                              const std::vector<FrameGeometry>& geometries,
+                              std::vector<Sample>& samples) const {
+  samples.clear();
+  const Eigen::Matrix<double, 3, 2> tangents = TangentsOf(point.n_world);
+  const Eigen::Matrix3d& R_thermal_depth = placement.T_thermal_depth.linear();
+  for (const std::uint32_t i : frames) {
+    const FrameGeometry& geometry = geometries[i];
+    if (!geometry.is_known || (is_blurred_ && blurred_[i].width() == 0)) continue;
+    const Eigen::Vector3d p_depth = geometry.T_depth_world * point.p_world;
+    const Eigen::Vector3d turned = R_thermal_depth * p_depth;
+    const Eigen::Vector3d p_thermal = turned + placement.T_thermal_depth.translation();
+    if (p_thermal.z() < kMinDepth_m) continue;
+    const ProjectionDerivatives projection = ProjectWithDerivatives(placement.camera, p_thermal);
+    const auto seen = InterpolateAt(is_blurred_ ? blurred_[i] : *views_.frames[i].temperature_raw, views_.frames[i].scale, projection.pixel);
+    if (!seen) continue;
+    const Eigen::Matrix<double, 2, 3> by_world_point =
+        projection.by_point * geometry.T_thermal_world.linear();
+    const Eigen::Matrix2d pixels_per_metre = by_world_point * tangents;
+    Eigen::Matrix<double, 2, kPlacementParameters> by_correction;
+    by_correction.block<2, 3>(0, kRotationX) = projection.by_point * DerivativeByRotation(turned);
+    by_correction.block<2, 3>(0, kTranslationX) = projection.by_point;
+    by_correction.col(kDelay) =
+        projection.by_point *
+        (R_thermal_depth * (geometry.velocity_depth_world * point.p_world.homogeneous()));
+    by_correction.block<2, 2>(0, kPrincipalX) = Eigen::Matrix2d::Identity();
+    Sample sample;
+    sample.kelvin = seen->kelvin;
+    sample.gradient_k_m = pixels_per_metre.transpose() * seen->gradient_k_px;
+    const Eigen::Matrix2d metres_per_pixel = pixels_per_metre.inverse();
+    sample.shift = metres_per_pixel * by_correction;
+    sample.drift_shift =
+        metres_per_pixel * (by_world_point * drift.ByKnot(point.p_world));
+    sample.drift = geometry.drift;
+    sample.pixels_per_metre = std::sqrt(std::abs(pixels_per_metre.determinant()));
+    const double cosine = -(geometry.T_thermal_world.linear() * point.n_world).dot(p_thermal) /
+                          p_thermal.norm();
+    sample.reflectivity =
+        FresnelReflectivity(std::acos(std::clamp(cosine, -1.0, 1.0)), kRefractiveIndex, 0.0);
+    sample.part = part_of_frame_[i];
+    sample.epoch = views_.frames[i].nuc_epoch;
+    sample.held_out = held_out_[i];
+    samples.push_back(sample);
+  }
+}
+
+void TextureAlignment::AddEpoch(const std::vector<Sample>& samples, const Epoch& epoch,
+                                const PointTexture& texture, double weight, Sums& sums) {
+  Eigen::MatrixXd& slopes = sums.slopes;  // By parameter and sample.
+  const Eigen::Index parameters = sums.equations.gradient.size();
+  slopes.setZero(parameters, static_cast<Eigen::Index>(epoch.count));
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(parameters), by_reflectivity = mean;
+  Eigen::Index column = 0;
+  for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
+    const Sample& sample = samples[i];
+    if (sample.held_out) continue;
+    auto slope = slopes.col(column++);
+    slope.head<kPlacementParameters>() = sample.shift.transpose() * texture.gradient_k_m;
+    if (parameters > kPlacementParameters) {
+      const Eigen::Matrix<double, TrajectoryDrift::kPerKnot, 1> drift =
+          sample.drift_shift.transpose() * texture.gradient_k_m;
+      const Eigen::Index first = kPlacementParameters + sample.drift.first;
+      slope.segment<TrajectoryDrift::kPerKnot>(first) = (1.0 - sample.drift.fraction) * drift;
+      slope.segment<TrajectoryDrift::kPerKnot>(first + TrajectoryDrift::kPerKnot) =
+          sample.drift.fraction * drift;
+    }
+    mean += slope;
+    by_reflectivity += (sample.reflectivity - epoch.reflectivity) * slope;
+  }
+  mean /= epoch.count;
+  by_reflectivity /= epoch.reflectivity_squares;
+  column = 0;
+  for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
+    const Sample& sample = samples[i];
+    const double difference_k = epoch.Difference(sample);
+    if (sample.held_out) {
+      sums.held_out_squares += weight * difference_k * difference_k;
+      sums.held_out_weights += weight;
+      continue;
+    }
+    auto slope = slopes.col(column++);
+    slope -= mean + (sample.reflectivity - epoch.reflectivity) * by_reflectivity;
+    sums.equations.part_gradients[static_cast<std::size_t>(sample.part)] +=
+        weight * difference_k * slope;
+  }
+  sums.equations.information.selfadjointView<Eigen::Lower>().rankUpdate(slopes, weight);
+}
+
+void TextureAlignment::AddPoint(const std::vector<Sample>& samples, Sums& sums) {
+  const std::optional<PointTexture> texture = TextureOf(samples);
+  if (!texture) return;
+  ++sums.equations.seen_points;
+  if (!texture->is_significant) return;
+  ++sums.equations.textured_points;
+  const std::vector<Epoch> epochs = EpochsOf(samples);
+  double count = 0.0, squares = 0.0;
+  for (const Epoch& epoch : epochs) {
+    count += epoch.count;
+    squares += epoch.squares;
+  }
+  if (count == 0.0) return;
+  const double edge_k = kMisalignment_px * texture->mean_slope_k_px;
+  const double variance_k2 = kNoise_k * kNoise_k + edge_k * edge_k + squares / count;
+  sums.equations.samples += count;
+  sums.equations.loss += 0.5 * count * std::log(variance_k2);
+  for (const Epoch& epoch : epochs) AddEpoch(samples, epoch, *texture, 1.0 / variance_k2, sums);
+}
+
+AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement,
+                                               const TrajectoryDrift& drift,
+                                               std::size_t points) const {
+  points = std::min(points, views_.points.size());
+  const std::vector<FrameGeometry> geometries = Geometries(placement, drift);
+  const std::size_t tasks = (points + kPointsPerTask - 1) / kPointsPerTask;
+  const int parameters = kPlacementParameters + drift.size();
+  std::vector<Sums> sums(tasks, Sums(parts_, parameters));
+  pool_.ParallelFor(static_cast<int>(tasks), [&](int index) {
+    const auto task = static_cast<std::size_t>(index);
+    std::vector<Sample> samples;
+    for (std::size_t i = task * kPointsPerTask;
+         i < std::min(points, (task + 1) * kPointsPerTask); ++i) {
+      Gather(views_.points[i], showing_[i], placement, drift, geometries, samples);
+      AddPoint(samples, sums[task]);
+    }
+  });
+  Sums total(parts_, parameters);
+  for (const Sums& sum : sums) total.Add(sum);
+  AlignmentEquations& equations = total.equations;
+  equations.information = equations.information.selfadjointView<Eigen::Lower>();
+  for (const Eigen::VectorXd& gradient : equations.part_gradients) equations.gradient += gradient;
+  if (equations.samples > 0.0) equations.loss /= equations.samples;
+  equations.held_out_k = std::sqrt(total.held_out_squares / total.held_out_weights);
+  return std::move(equations);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/image.h"
+#include "ground/calibration/texture_consistency.h"
+#include "ground/calibration/thermal_placement.h"
+#include "ground/calibration/trajectory_drift.h"
+
+namespace isotherm {
+
+/// Says how the thermal images of a scan disagree about its surface at one placement and drift, and
+/// which small corrections of them would make them agree: first the placement's
+/// (kPlacementParameters), then the drift's values if they are asked for.
+struct AlignmentEquations {
+  /// Second and first derivatives of the loss: its minimum is near -information^-1 gradient.
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+  std::vector<Eigen::VectorXd> part_gradients;  ///< By part of the scan; `gradient` is their sum.
+  double loss = 0.0;        ///< Mean over the samples of the logarithm of their deviation, kelvin.
+  double samples = 0.0;     ///< Pairs of a point and a frame that count.
+  int seen_points = 0;      ///< Points that enough frames show.
+  int textured_points = 0;  ///< Those of them where the temperature changes along the surface.
+  /// Weighted root mean square of what held-out frames show against what all others say, kelvin;
+  /// NaN without held-out frames.
+  double held_out_k = 0.0;
+};
+
+/// Compares the thermal images of a scan point by point of its surface, each with the mean of all
+/// that show the point in the same NUC epoch, and linearises the differences by the placement
+/// (Gauss-Newton). The gradient along the surface is the mean over all images that show it: that of
+/// a single one holds noise, which would pass for knowledge. Points without a gradient above chance
+/// do not count. Every third part of the scan may be held out. Thread-compatible.
+class TextureAlignment {
+ public:
+  /// `views` and `pool` must outlive it. Every frame's `visible` is filled.
+  TextureAlignment(const ScanViews& views, bool hold_out, ThreadPool& pool);
+
+  /// Compares images blurred by a Gaussian from here on: of this standard deviation at the usual
+  /// distance, so that it is as wide on the surface from any distance. Otherwise nearness would
+  /// sharpen edges, which passes for a misalignment.
+  void BlurImages(double sigma_px);
+
+  /// By the first `points` of the points; by the drift's values too if it has any.
+  AlignmentEquations Linearize(const ThermalPlacement& placement, const TrajectoryDrift& drift,
+                               std::size_t points) const;
+
+ private:
+  struct FrameGeometry;
+  struct Sample;
+  struct PointTexture;
+  struct Epoch;
+  struct Sums;
+
+  std::vector<double> Distances() const;
+  std::vector<FrameGeometry> Geometries(const ThermalPlacement& placement,
+                                        const TrajectoryDrift& drift) const;
+  void Gather(const TexturePoint& point, const std::vector<std::uint32_t>& frames,
+              const ThermalPlacement& placement, const TrajectoryDrift& drift,
+              const std::vector<FrameGeometry>& geometries, std::vector<Sample>& samples) const;
+  static std::optional<PointTexture> TextureOf(const std::vector<Sample>& samples);
+  static void Complete(const std::vector<Sample>& samples, Epoch& epoch);
+  static std::vector<Epoch> EpochsOf(const std::vector<Sample>& samples);
+  static void AddEpoch(const std::vector<Sample>& samples, const Epoch& epoch,
+                       const PointTexture& texture, double weight, Sums& sums);
+  static void AddPoint(const std::vector<Sample>& samples, Sums& sums);
+
+  const ScanViews& views_;
+  ThreadPool& pool_;
+  int parts_ = 0;
+  std::vector<int> part_of_frame_;
+  std::vector<bool> held_out_;                        ///< By frame.
+  std::vector<std::vector<std::uint32_t>> showing_;   ///< By point: frames that show it.
+  bool is_blurred_ = false;
+  std::vector<Image<std::uint16_t>> blurred_;         ///< By frame.
+};
+
+}  // namespace isotherm

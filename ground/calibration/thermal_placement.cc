@@ -1,0 +1,57 @@
+#include "ground/calibration/thermal_placement.h"
+
+#include <Eigen/Geometry>
+
+namespace isotherm {
+
+ThermalPlacement Corrected(const ThermalPlacement& placement, const PlacementVector& correction) {
+  ThermalPlacement corrected = placement;
+  const Eigen::Vector3d rotation_rad = correction.segment<3>(kRotationX);
+  const double angle_rad = rotation_rad.norm();
+  if (angle_rad > 0.0) {
+    corrected.T_thermal_depth.linear() =
+        Eigen::AngleAxisd(angle_rad, rotation_rad / angle_rad).toRotationMatrix() *
+        placement.T_thermal_depth.linear();
+  }
+  corrected.T_thermal_depth.translation() += correction.segment<3>(kTranslationX);
+  corrected.delay_s += correction[kDelay];
+  corrected.camera.cx += correction[kPrincipalX];
+  corrected.camera.cy += correction[kPrincipalY];
+  return corrected;
+}
+
+PlacementVector CorrectionBetween(const ThermalPlacement& from, const ThermalPlacement& to) {
+  PlacementVector correction;
+  const Eigen::AngleAxisd turned(to.T_thermal_depth.linear() *
+                                 from.T_thermal_depth.linear().transpose());
+  correction.segment<3>(kRotationX) = turned.angle() * turned.axis();
+  correction.segment<3>(kTranslationX) =
+      to.T_thermal_depth.translation() - from.T_thermal_depth.translation();
+  correction[kDelay] = to.delay_s - from.delay_s;
+  correction[kPrincipalX] = to.camera.cx - from.camera.cx;
+  correction[kPrincipalY] = to.camera.cy - from.camera.cy;
+  return correction;
+}
+
+ProjectionDerivatives ProjectWithDerivatives(const CameraModel& camera,
+                                             const Eigen::Vector3d& p_thermal) {
+  const double inverse_z = 1.0 / p_thermal.z();
+  const double x = p_thermal.x() * inverse_z, y = p_thermal.y() * inverse_z;
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
+  const double slope = camera.k1 + r2 * (2.0 * camera.k2 + 3.0 * r2 * camera.k3);  // By r2.
+  const double p1 = camera.p1, p2 = camera.p2;
+  Eigen::Matrix2d distorted;
+  distorted << radial + 2.0 * x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x,
+      2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y,
+      2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y,
+      radial + 2.0 * y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x;
+  Eigen::Matrix<double, 2, 3> normalized;
+  normalized << inverse_z, 0.0, -x * inverse_z, 0.0, inverse_z, -y * inverse_z;
+  ProjectionDerivatives result;
+  result.pixel = ProjectNormalized(camera, {x, y});
+  result.by_point = Eigen::Vector2d(camera.fx, camera.fy).asDiagonal() * distorted * normalized;
+  return result;
+}
+
+}  // namespace isotherm

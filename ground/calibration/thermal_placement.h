@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string_view>
+
+#include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+
+namespace isotherm {
+
+/// The values that a scan may correct: where the thermal camera sits, how it looks, and when.
+struct ThermalPlacement {
+  CameraModel camera;  ///< As images come, with distortion.
+  RigidTransform T_thermal_depth = RigidTransform::Identity();
+  double delay_s = 0.0;  ///< To be added to the stamps that the recording has.
+};
+
+/// Numbers the corrections of a placement: a rotation vector in thermal coordinates (radians,
+/// turned after the placement's own rotation), a shift of the translation (metres), a delay
+/// (seconds) and a shift of the principal point (pixels).
+enum PlacementParameter : std::uint8_t {
+  kRotationX,
+  kRotationY,
+  kRotationZ,
+  kTranslationX,
+  kTranslationY,
+  kTranslationZ,
+  kDelay,
+  kPrincipalX,
+  kPrincipalY,
+};
+inline constexpr int kPlacementParameters = 9;
+/// Their names in files, in their order.
+inline constexpr std::string_view kPlacementParameterNames = "rx ry rz tx ty tz delay cx cy";
+
+using PlacementVector = Eigen::Matrix<double, kPlacementParameters, 1>;
+using PlacementMatrix = Eigen::Matrix<double, kPlacementParameters, kPlacementParameters>;
+
+/// The placement corrected by `correction`.
+ThermalPlacement Corrected(const ThermalPlacement& placement, const PlacementVector& correction);
+
+/// The correction that makes `to` of `from`; their cameras differ by the principal point only.
+PlacementVector CorrectionBetween(const ThermalPlacement& from, const ThermalPlacement& to);
+
+/// The pixel that shows a point, with its derivatives.
+struct ProjectionDerivatives {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix<double, 2, 3> by_point;  ///< Pixels per metre, thermal coordinates.
+};
+
+/// `p_thermal` (metres, thermal coordinates) has z > 0.
+ProjectionDerivatives ProjectWithDerivatives(const CameraModel& camera,
+                                             const Eigen::Vector3d& p_thermal);
+
+}  // namespace isotherm

@@ -1,0 +1,250 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/base/output_file.h"
+#include "common/base/progress.h"
+#include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
+#include "common/rig/rig_calibration_file.h"
+#include "ground/cli/command.h"
+#include "ground/cli/configuration_arguments.h"
+#include "ground/cli/frame_rendering.h"
+#include "ground/cli/refinement_text.h"
+#include "ground/cli/today.h"
+#include "ground/export/png_file.h"
+#include "ground/json/json.h"
+#include "ground/offline/recording_refinement.h"
+#include "ground/options/ground_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kRefineFooter =
+    R"(Finds where the thermal camera sits and how it looks (pose to the depth camera, principal point, delay)
+from any scan of something with warm and cold parts: the depth camera is tracked, and the thermal images must
+agree about each point of the surface. No target is needed. A third of the scan is held out and must agree
+better afterwards.
+
+The calibration at hand is where the search begins, and what stays where the scan says nothing: --prior-...
+says how far its values may be off (one standard deviation; 0 keeps a value). A scan of ten seconds in which
+the rig is moved to and fro, nearer and farther, and turned about its view tells everything; a steady sweep
+past a wall little. Uncertainties hold what drifting poses can be taken for.
+
+Without --apply or --output nothing is written. The file as it was is kept beside it (FILE.bak).
+
+Examples:
+  isotherm calibrate refine scan.mcap --rig rig.textproto --picture refined.png
+  isotherm calibrate refine scan.mcap --rig rig.textproto --apply
+  isotherm calibrate refine scan.mcap --rig rig.textproto --prior-principal-point 0)";
+
+constexpr const char* kCheckFooter =
+    R"(Says, before a job, whether pose and delay of the thermal camera are still what the calibration says, from
+half a minute of scanning something with warm and cold parts: one line each. Exit status 0: both fit;
+1: something has moved; 2: this scan cannot tell.
+
+Examples:
+  isotherm calibrate check scan.mcap
+  isotherm calibrate check scan.mcap --rig rig.textproto)";
+
+struct RefineArguments {
+  std::string recording, rig, output, picture, json;
+  double rotation_deg = 1.0, translation_mm = 10.0, delay_ms = 20.0, principal_point_px = 5.0;
+  ConfigurationArguments configuration;
+  bool apply = false;
+  int threads = 0;
+};
+
+/// Reads what the arguments name, refines, and shows the progress.
+class RefineRun {
+ public:
+  explicit RefineRun(const RefineArguments& arguments) : arguments_(arguments) {}
+
+  /// Returns an exit status if there is no result.
+  std::optional<int> Refine() {
+    Problems problems;
+    Apply(arguments_.configuration, options_, problems);
+    options_.set_threads(arguments_.threads);
+    AddInvalid(options_, problems);
+    if (!problems.empty()) return FailConfiguration(problems.text());
+    RefinementInput input;
+    input.recording = arguments_.recording;
+    if (!arguments_.rig.empty()) {
+      Result<Rig> rig = LoadRigCalibration(arguments_.rig);
+      if (!rig) return Fail(rig.error());
+      input.rig = std::move(*rig);
+    }
+    input.prior = {arguments_.rotation_deg * std::numbers::pi / 180.0,
+                   1e-3 * arguments_.translation_mm, 1e-3 * arguments_.delay_ms,
+                   arguments_.principal_point_px};
+    input.with_picture = !arguments_.picture.empty();
+    ProgressBar bar("calibrating", 0, "");
+    Result<RecordingRefinement> refined =
+        RefineByRecording(input, options_, [&](double fraction) { bar.Update(fraction); });
+    if (!refined) return Fail(refined.error());
+    bar.Finish();
+    refined_ = std::move(*refined);
+    verdict_ = Assess(refined_, options_.delay_check().expert().max_shift_s());
+    return std::nullopt;
+  }
+
+  const RecordingRefinement& refined() const { return refined_; }
+  const RefinementVerdict& verdict() const { return verdict_; }
+
+ private:
+  const RefineArguments& arguments_;
+  GroundOptions options_;
+  RecordingRefinement refined_;
+  RefinementVerdict verdict_;
+};
+
+/// Changes what was refined, and says how.
+void SetRefined(const RefineArguments& arguments, const RecordingRefinement& refined,
+                RigCalibration& rig) {
+  const Refinement& r = refined.refinement;
+  rig.mutable_thermal()->set_cx(r.after.camera.cx);
+  rig.mutable_thermal()->set_cy(r.after.camera.cy);
+  *rig.mutable_t_thermal_depth() = ToProto(r.after.T_thermal_depth);
+  rig.set_thermal_delay_s(refined.DelayAfter());
+  rig.set_date(Today());
+  CalibrationRecord record;
+  record.set_date(Today());
+  record.set_method(fmt::format("{}, calibrate refine", SoftwareName()));
+  record.set_target(fmt::format("scan {}", arguments.recording));
+  record.set_views(static_cast<int>(r.frames));
+  record.set_features(r.textured_points);
+  record.set_uncertainty_px(r.shift.sigma_px);
+  record.set_parameters(std::string(kPlacementParameterNames));
+  for (int row = 0; row < kPlacementParameters; ++row) {
+    for (int column = 0; column < kPlacementParameters; ++column)
+      record.add_covariance(r.covariance(row, column));
+  }
+  *rig.mutable_pose_calibration() = record;
+}
+
+Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined) {
+  const std::string& path = arguments.apply ? arguments.rig : arguments.output;
+  ISOTHERM_RETURN_IF_ERROR(EditRigFile(path, [&](RigCalibration& rig) {
+    // Another file than the one that was refined gets all of it.
+    if (!arguments.apply) rig = ToProto(refined.rig);
+    SetRefined(arguments, refined, rig);
+    return OkStatus();
+  }));
+  fmt::print("{}: written\n", path);
+  return OkStatus();
+}
+
+Status WriteExtras(const RefineArguments& arguments, const RefineRun& run) {
+  if (!arguments.json.empty()) {
+    ISOTHERM_RETURN_IF_ERROR(
+        WriteFile(arguments.json, JsonText(RefinementJson(run.refined(), run.verdict()))));
+    fmt::print("{}: written\n", arguments.json);
+  }
+  if (!arguments.picture.empty()) {
+    const RgbImage picture = TemperatureRendering(BeforeAndAfter(run.refined()),
+                                                  "mean of all images, before and after");
+    ISOTHERM_RETURN_IF_ERROR(WritePng(picture, arguments.picture));
+    fmt::print("{}: the mean of all images on the surface, before (left) and after (right)\n",
+               arguments.picture);
+  }
+  return OkStatus();
+}
+
+int RunRefine(const RefineArguments& arguments) {
+  RefineRun run(arguments);
+  if (const std::optional<int> failed = run.Refine()) return *failed;
+  fmt::print("{}", RefinementText(run.refined()));
+  if (Status status = WriteExtras(arguments, run); !status.ok()) return Fail(status);
+  if (!run.verdict().Moved()) {
+    fmt::print("{}nothing to write\n", CheckText(run.refined(), run.verdict()));
+    return 0;
+  }
+  if (arguments.output.empty() && !arguments.apply) {
+    fmt::print("nothing is written: --apply changes the file of --rig, --output writes another\n");
+    return 0;
+  }
+  const Status written = WriteRig(arguments, run.refined());
+  return written.ok() ? 0 : Fail(written);
+}
+
+int RunCheck(const RefineArguments& arguments) {
+  RefineRun run(arguments);
+  if (const std::optional<int> failed = run.Refine()) return *failed;
+  fmt::print("{}", CheckText(run.refined(), run.verdict()));
+  if (run.verdict().Moved()) {
+    fmt::print("see `isotherm calibrate refine {}`\n", arguments.recording);
+    return 1;
+  }
+  const bool both_told = run.verdict().geometry == DelayVerdict::kAgrees &&
+                         run.verdict().delay == DelayVerdict::kAgrees;
+  return both_told ? 0 : 2;
+}
+
+void AddCommonArguments(CLI::App& command, RefineArguments& arguments) {
+  command.add_option("recording", arguments.recording, "Recording (.mcap)")->required();
+  AddConfigurationArguments(command, arguments.configuration);
+  command.add_option("--threads", arguments.threads, "Threads; 0 = one per core");
+}
+
+void AddPriorArguments(CLI::App& command, RefineArguments& arguments) {
+  command
+      .add_option("--prior-rotation", arguments.rotation_deg,
+                  "Rotations may be off by this, degrees; 0 keeps them")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  command
+      .add_option("--prior-translation", arguments.translation_mm,
+                  "Translations may be off by this, millimetres; 0 keeps them")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command
+      .add_option("--prior-delay", arguments.delay_ms,
+                  "The delay may be off by this, milliseconds; 0 keeps it")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command
+      .add_option("--prior-principal-point", arguments.principal_point_px,
+                  "The principal point may be off by this, pixels; 0 keeps it")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
+  CLI::App* command = calibrate.add_subcommand(
+      "refine", "Pose, principal point and delay of the thermal camera from any scan");
+  auto arguments = std::make_shared<RefineArguments>();
+  AddCommonArguments(*command, *arguments);
+  CLI::Option* rig_option =
+      command->add_option("--rig", arguments->rig, "Calibration to refine; without, the recording's");
+  CLI::Option* apply_option =
+      command->add_flag("--apply", arguments->apply, "Change the file of --rig")->needs(rig_option);
+  command->add_option("-o,--output", arguments->output, "Write the refined calibration here instead")
+      ->excludes(apply_option);
+  command->add_option("--picture", arguments->picture,
+                      "Write the surface with the mean of all images before and after (.png)");
+  command->add_option("--json", arguments->json, "Write all values and their covariance (.json)");
+  AddPriorArguments(*command, *arguments);
+  command->footer(kRefineFooter);
+  command->callback([arguments, &body] { body = [arguments] { return RunRefine(*arguments); }; });
+}
+
+void AddCalibrateCheckCommand(CLI::App& calibrate, CommandBody& body) {
+  CLI::App* command = calibrate.add_subcommand(
+      "check", "Whether pose and delay of the thermal camera are still as calibrated");
+  auto arguments = std::make_shared<RefineArguments>();
+  AddCommonArguments(*command, *arguments);
+  command->add_option("--rig", arguments->rig, "Calibration to check; without, the recording's");
+  command->footer(kCheckFooter);
+  command->callback([arguments, &body] { body = [arguments] { return RunCheck(*arguments); }; });
+}
+
+}  // namespace isotherm
