@@ -63,8 +63,7 @@ AlignmentStep SolveAlignment(const AlignmentEquations& equations, const Alignmen
     const Eigen::MatrixXd mixed = all.information.bottomLeftCorner(knots, kPlacementParameters);
     const Eigen::LDLT<Eigen::MatrixXd> solver(all.information.bottomRightCorner(knots, knots) +
                                               Eigen::MatrixXd::Identity(knots, knots));
-    drift_step =
-        -solver.solve(all.gradient.tail(knots) + drift.cwiseQuotient(prior.drift_sigma));
+    drift_step = -solver.solve(all.gradient.tail(knots) + drift.cwiseQuotient(prior.drift_sigma));
     drift_by_placement = -solver.solve(mixed);
     information += mixed.transpose() * drift_by_placement;
     gradient += mixed.transpose() * drift_step;

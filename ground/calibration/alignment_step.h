@@ -11,11 +11,11 @@ namespace isotherm {
 struct AlignmentStep {
   PlacementVector placement = PlacementVector::Zero();
   Eigen::VectorXd drift;
-  double length = 0.0;  ///< Of the placement's step, in standard deviations of the prior.
-  /// Of the whole correction since the prior's, in its units; what the images do not tell keeps the
-  /// prior's variance.
+  double length = 0.0;  ///< The placement's step, in standard deviations of the prior.
+  /// The whole correction's, as certain as it is after this step. The images say nothing of some
+  /// directions: these keep the prior's variance.
   PlacementMatrix covariance = PlacementMatrix::Zero();
-  int observed_directions = 0;  ///< Of kPlacementParameters.
+  int observed_directions = 0;  ///< How many of kPlacementParameters the images tell.
 };
 
 /// Holds what is known before the images are looked at, about the placement's correction and the

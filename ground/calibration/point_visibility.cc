@@ -145,7 +145,7 @@ std::vector<std::uint32_t> ShownByAll(const std::deque<PoseView>& window, std::s
 bool Covered(const ScanViews& views, CaptureTime time, double range_s) {
   // Shorter than a gap that poses are not interpolated over (kMaxGap_s).
   constexpr double kStep_s = 0.025;
-  const int steps = static_cast<int>(std::ceil(range_s / kStep_s));
+  const int steps = std::max(1, static_cast<int>(std::ceil(range_s / kStep_s)));
   for (int k = -steps; k <= steps; ++k) {
     if (!InterpolatePose(views.trajectory, time + FromSeconds(range_s * k / steps))) return false;
   }

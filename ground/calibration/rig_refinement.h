@@ -28,20 +28,22 @@ struct ImageShift {
 /// Holds what a scan says about its rig.
 struct Refinement {
   ThermalPlacement before, after;
-  PlacementVector correction = PlacementVector::Zero();   ///< From `before` to `after`.
+  PlacementVector correction = PlacementVector::Zero();  ///< From `before` to `after`.
   PlacementVector prior_sigma = PlacementVector::Zero();
-  PlacementMatrix covariance = PlacementMatrix::Zero();   ///< Of the correction.
-  int observed_directions = 0;                            ///< Of kPlacementParameters.
+  PlacementMatrix covariance = PlacementMatrix::Zero();  ///< The correction's.
+  int observed_directions = 0;  ///< How many of kPlacementParameters the scan tells.
   /// How far the scanned points move in the thermal images, the delay apart.
   ImageShift shift;
-  /// What the third of the scan that was held out differs by from what the rest says, kelvin.
+  /// The third of the scan that was held out differs by this from what the rest says, kelvin.
   double held_out_before_k = 0.0, held_out_after_k = 0.0;
+  /// It agrees better with the rest afterwards (AlignmentEquations::held_out_loss).
+  bool improves_held_out = false;
   std::size_t frames = 0;  ///< Thermal frames that were compared, those held out too.
   int textured_points = 0, points = 0;
 
   /// One standard deviation of the correction of one value.
   double Sigma(PlacementParameter parameter) const;
-  /// Whether the scan says more about one value than was known before.
+  /// Returns whether the scan says more about one value than was known before.
   bool Tells(PlacementParameter parameter) const;
 };
 

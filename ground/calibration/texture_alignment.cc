@@ -103,7 +103,7 @@ struct TextureAlignment::FrameGeometry {
   TrajectoryDrift::Place drift;
 };
 
-/// What one frame shows of one point.
+/// Holds what one frame shows of one point.
 struct TextureAlignment::Sample {
   double kelvin = 0.0;
   Eigen::Vector2d gradient_k_m;  ///< Along the surface.
@@ -112,7 +112,7 @@ struct TextureAlignment::Sample {
   Eigen::Matrix<double, 2, TrajectoryDrift::kPerKnot> drift_shift;  ///< The same by a knot.
   TrajectoryDrift::Place drift;
   double pixels_per_metre = 0.0;
-  double reflectivity = 0.0;  ///< Of a dielectric surface seen at this emission angle.
+  double reflectivity = 0.0;  ///< A dielectric surface's, seen at this emission angle.
   int part = 0;
   std::uint8_t epoch = 0;
   bool held_out = false;
@@ -136,17 +136,20 @@ struct TextureAlignment::Sums {
     to.textured_points += from.textured_points;
     held_out_squares += other.held_out_squares;
     held_out_weights += other.held_out_weights;
+    held_out_logarithms += other.held_out_logarithms;
+    held_out_samples += other.held_out_samples;
   }
 
   AlignmentEquations equations;
   double held_out_squares = 0.0, held_out_weights = 0.0;
+  double held_out_logarithms = 0.0, held_out_samples = 0.0;
   Eigen::MatrixXd slopes;  ///< Scratch.
 };
 
 /// How the temperature changes along the surface at a point, by the frames that are not held out.
 struct TextureAlignment::PointTexture {
   Eigen::Vector2d gradient_k_m = Eigen::Vector2d::Zero();
-  double mean_slope_k_px = 0.0;  ///< Of single images.
+  double mean_slope_k_px = 0.0;  ///< The mean of single images' own gradients.
   bool is_significant = false;   ///< The gradient is above what noise makes.
 };
 
@@ -154,15 +157,14 @@ struct TextureAlignment::PointTexture {
 /// temperature and its change with the emission angle, fitted to those that are not held out.
 struct TextureAlignment::Epoch {
   std::size_t begin = 0, end = 0;
-  double count = 0.0;  ///< Of samples that are not held out; the rest is about them.
+  double count = 0.0;  ///< Samples that are not held out; the rest is about them.
   double kelvin = 0.0, reflectivity = 0.0;  ///< Means.
   double kelvin_by_reflectivity = 0.0;
   double reflectivity_squares = 0.0;  ///< Sum over the samples, about the mean.
-  double squares = 0.0;               ///< Of the differences, K^2.
+  double squares = 0.0;               ///< Sum over the differences, K^2.
 
   double Difference(const Sample& sample) const {
-    return sample.kelvin - kelvin -
-           kelvin_by_reflectivity * (sample.reflectivity - reflectivity);
+    return sample.kelvin - kelvin - kelvin_by_reflectivity * (sample.reflectivity - reflectivity);
   }
 };
 
@@ -181,8 +183,8 @@ std::optional<TextureAlignment::PointTexture> TextureAlignment::TextureOf(
   texture.gradient_k_m /= count;
   texture.mean_slope_k_px /= count;
   const double scatter = squares / count - texture.gradient_k_m.squaredNorm();
-  texture.is_significant =
-      texture.gradient_k_m.squaredNorm() > kMinSignificance * std::max(0.0, scatter) / (count - 1.0);
+  texture.is_significant = texture.gradient_k_m.squaredNorm() >
+                           kMinSignificance * std::max(0.0, scatter) / (count - 1.0);
   return texture;
 }
 
@@ -289,9 +291,9 @@ std::vector<TextureAlignment::FrameGeometry> TextureAlignment::Geometries(
     const RigidTransform motion = drift.MotionAt(geometry.drift);
     geometry.T_depth_world = at->inverse() * motion;
     geometry.T_thermal_world = placement.T_thermal_depth * geometry.T_depth_world;
-    geometry.velocity_depth_world = (after->inverse().matrix() - before->inverse().matrix())
-                                        .topRows<3>() /
-                                    (2.0 * kHalfBaseline_s);
+    geometry.velocity_depth_world =
+        (after->inverse().matrix() - before->inverse().matrix()).topRows<3>() /
+        (2.0 * kHalfBaseline_s);
   }
   return geometries;
 }
@@ -311,7 +313,8 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
     const Eigen::Vector3d p_thermal = turned + placement.T_thermal_depth.translation();
     if (p_thermal.z() < kMinDepth_m) continue;
     const ProjectionDerivatives projection = ProjectWithDerivatives(placement.camera, p_thermal);
-    const auto seen = InterpolateAt(is_blurred_ ? blurred_[i] : *views_.frames[i].temperature_raw, views_.frames[i].scale, projection.pixel);
+    const auto seen = InterpolateAt(is_blurred_ ? blurred_[i] : *views_.frames[i].temperature_raw,
+                                    views_.frames[i].scale, projection.pixel);
     if (!seen) continue;
     const Eigen::Matrix<double, 2, 3> by_world_point =
         projection.by_point * geometry.T_thermal_world.linear();
@@ -328,12 +331,11 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
     sample.gradient_k_m = pixels_per_metre.transpose() * seen->gradient_k_px;
     const Eigen::Matrix2d metres_per_pixel = pixels_per_metre.inverse();
     sample.shift = metres_per_pixel * by_correction;
-    sample.drift_shift =
-        metres_per_pixel * (by_world_point * drift.ByKnot(point.p_world));
+    sample.drift_shift = metres_per_pixel * (by_world_point * drift.ByKnot(point.p_world));
     sample.drift = geometry.drift;
     sample.pixels_per_metre = std::sqrt(std::abs(pixels_per_metre.determinant()));
-    const double cosine = -(geometry.T_thermal_world.linear() * point.n_world).dot(p_thermal) /
-                          p_thermal.norm();
+    const double cosine =
+        -(geometry.T_thermal_world.linear() * point.n_world).dot(p_thermal) / p_thermal.norm();
     sample.reflectivity =
         FresnelReflectivity(std::acos(std::clamp(cosine, -1.0, 1.0)), kRefractiveIndex, 0.0);
     sample.part = part_of_frame_[i];
@@ -375,6 +377,8 @@ void TextureAlignment::AddEpoch(const std::vector<Sample>& samples, const Epoch&
     if (sample.held_out) {
       sums.held_out_squares += weight * difference_k * difference_k;
       sums.held_out_weights += weight;
+      sums.held_out_logarithms -= std::log(weight);
+      sums.held_out_samples += 1.0;
       continue;
     }
     auto slope = slopes.col(column++);
@@ -416,8 +420,8 @@ AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement
   pool_.ParallelFor(static_cast<int>(tasks), [&](int index) {
     const auto task = static_cast<std::size_t>(index);
     std::vector<Sample> samples;
-    for (std::size_t i = task * kPointsPerTask;
-         i < std::min(points, (task + 1) * kPointsPerTask); ++i) {
+    for (std::size_t i = task * kPointsPerTask; i < std::min(points, (task + 1) * kPointsPerTask);
+         ++i) {
       Gather(views_.points[i], showing_[i], placement, drift, geometries, samples);
       AddPoint(samples, sums[task]);
     }
@@ -429,6 +433,8 @@ AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement
   for (const Eigen::VectorXd& gradient : equations.part_gradients) equations.gradient += gradient;
   if (equations.samples > 0.0) equations.loss /= equations.samples;
   equations.held_out_k = std::sqrt(total.held_out_squares / total.held_out_weights);
+  equations.held_out_loss =
+      0.5 * (total.held_out_squares + total.held_out_logarithms) / total.held_out_samples;
   return std::move(equations);
 }
 

@@ -24,10 +24,13 @@ struct AlignmentEquations {
   double loss = 0.0;        ///< Mean over the samples of the logarithm of their deviation, kelvin.
   double samples = 0.0;     ///< Pairs of a point and a frame that count.
   int seen_points = 0;      ///< Points that enough frames show.
-  int textured_points = 0;  ///< Those of them where the temperature changes along the surface.
+  int textured_points = 0;  ///< The temperature changes along the surface at so many of them.
   /// Weighted root mean square of what held-out frames show against what all others say, kelvin;
   /// NaN without held-out frames.
   double held_out_k = 0.0;
+  /// Mean over the held-out samples of minus the logarithm of what a normal distribution about what
+  /// the others say gives for them: the lower, the better they were predicted.
+  double held_out_loss = 0.0;
 };
 
 /// Compares the thermal images of a scan point by point of its surface, each with the mean of all
@@ -73,10 +76,10 @@ class TextureAlignment {
   ThreadPool& pool_;
   int parts_ = 0;
   std::vector<int> part_of_frame_;
-  std::vector<bool> held_out_;                        ///< By frame.
-  std::vector<std::vector<std::uint32_t>> showing_;   ///< By point: frames that show it.
+  std::vector<bool> held_out_;                       ///< By frame.
+  std::vector<std::vector<std::uint32_t>> showing_;  ///< By point: frames that show it.
   bool is_blurred_ = false;
-  std::vector<Image<std::uint16_t>> blurred_;         ///< By frame.
+  std::vector<Image<std::uint16_t>> blurred_;  ///< By frame.
 };
 
 }  // namespace isotherm

@@ -47,9 +47,8 @@ Image<float> MeanTexture(const TsdfVolume& tsdf, const ScanViews& views,
   const auto T_world_depth = pose_at(views.frames[shown]);
   if (!T_world_depth) return picture;
   SurfaceMaps maps;
-  Raycaster().Cast(tsdf, camera,
-                   InFirstMap(*T_world_depth * placement.T_thermal_depth.inverse()), kMinWeight,
-                   pool, maps);
+  Raycaster().Cast(tsdf, camera, InFirstMap(*T_world_depth * placement.T_thermal_depth.inverse()),
+                   kMinWeight, pool, maps);
   ScanViews seen;
   seen.thermal_camera = placement.camera;
   seen.T_thermal_depth = placement.T_thermal_depth;

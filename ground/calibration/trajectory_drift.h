@@ -8,8 +8,8 @@
 
 namespace isotherm {
 
-/// What tracked poses are off by: small rigid motions of the world, given at times spread evenly
-/// over the scan (knots) and linear in between. Thread-compatible.
+/// Holds what tracked poses are off by: small rigid motions of the world, given at times spread
+/// evenly over the scan (knots) and linear in between. Thread-compatible.
 class TrajectoryDrift {
  public:
   /// A rotation vector (radians) about the surface's middle and a shift (metres), world

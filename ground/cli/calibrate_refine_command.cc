@@ -148,8 +148,8 @@ Status WriteExtras(const RefineArguments& arguments, const RefineRun& run) {
     fmt::print("{}: written\n", arguments.json);
   }
   if (!arguments.picture.empty()) {
-    const RgbImage picture = TemperatureRendering(BeforeAndAfter(run.refined()),
-                                                  "mean of all images, before and after");
+    const RgbImage picture =
+        TemperatureRendering(BeforeAndAfter(run.refined()), "before and after");
     ISOTHERM_RETURN_IF_ERROR(WritePng(picture, arguments.picture));
     fmt::print("{}: the mean of all images on the surface, before (left) and after (right)\n",
                arguments.picture);
@@ -223,11 +223,12 @@ void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
       "refine", "Pose, principal point and delay of the thermal camera from any scan");
   auto arguments = std::make_shared<RefineArguments>();
   AddCommonArguments(*command, *arguments);
-  CLI::Option* rig_option =
-      command->add_option("--rig", arguments->rig, "Calibration to refine; without, the recording's");
+  CLI::Option* rig_option = command->add_option("--rig", arguments->rig,
+                                                "Calibration to refine; without, the recording's");
   CLI::Option* apply_option =
       command->add_flag("--apply", arguments->apply, "Change the file of --rig")->needs(rig_option);
-  command->add_option("-o,--output", arguments->output, "Write the refined calibration here instead")
+  command
+      ->add_option("-o,--output", arguments->output, "Write the refined calibration here instead")
       ->excludes(apply_option);
   command->add_option("--picture", arguments->picture,
                       "Write the surface with the mean of all images before and after (.png)");

@@ -40,8 +40,7 @@ std::vector<ShownValue> ShownValues(const RecordingRefinement& refined) {
   std::vector<ShownValue> values;
   const auto add = [&](PlacementParameter parameter, const std::string& name,
                        const std::string& unit, double scale, double before, double after) {
-    values.push_back(
-        {name, unit, before, after, scale * r.Sigma(parameter), r.Tells(parameter)});
+    values.push_back({name, unit, before, after, scale * r.Sigma(parameter), r.Tells(parameter)});
   };
   const std::array<const char*, 3> axes = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -61,32 +60,27 @@ std::vector<ShownValue> ShownValues(const RecordingRefinement& refined) {
   return values;
 }
 
-bool HeldOutAgreesBetter(const Refinement& refinement) {
-  return refinement.held_out_after_k < refinement.held_out_before_k;
-}
-
 }  // namespace
 
 RefinementVerdict Assess(const RecordingRefinement& refined, double max_shift_s) {
   const Refinement& r = refined.refinement;
   RefinementVerdict verdict;
   if (r.shift.rms_px > std::max(kMaxShift_px, kSigmas * r.shift.sigma_px)) {
-    verdict.geometry =
-        HeldOutAgreesBetter(r) ? DelayVerdict::kMoved : DelayVerdict::kNotAssessed;
+    verdict.geometry = r.improves_held_out ? DelayVerdict::kMoved : DelayVerdict::kNotAssessed;
   } else if (r.shift.sigma_px <= kMaxSigmaToAgree_px) {
     verdict.geometry = DelayVerdict::kAgrees;
   }
   verdict.delay =
       Assess({.delay_s = r.correction[kDelay], .sigma_s = r.Sigma(kDelay)}, max_shift_s);
-  if (verdict.delay == DelayVerdict::kMoved && !HeldOutAgreesBetter(r))
+  if (verdict.delay == DelayVerdict::kMoved && !r.improves_held_out)
     verdict.delay = DelayVerdict::kNotAssessed;
   return verdict;
 }
 
 std::string RefinementText(const RecordingRefinement& refined) {
   const Refinement& r = refined.refinement;
-  std::string text =
-      fmt::format("{:<18}{:>10}{:>10}{:>10}{:>14}\n", "", "before", "after", "change", "uncertain by");
+  std::string text = fmt::format("{:<18}{:>10}{:>10}{:>10}{:>14}\n", "", "before", "after",
+                                 "change", "uncertain by");
   for (const ShownValue& value : ShownValues(refined)) {
     text += fmt::format("{:<18}{:>10.3f}{:>10.3f}{:>+10.3f}{:>14.3f} {}{}\n", value.name,
                         value.before, value.after, value.after - value.before, value.sigma,
@@ -152,8 +146,8 @@ nlohmann::json RefinementJson(const RecordingRefinement& refined,
 Image<float> BeforeAndAfter(const RecordingRefinement& refined) {
   const Image<float>& left = refined.before_celsius;
   const Image<float>& right = refined.after_celsius;
-  Image<float> both(left.width() + kGap_px + right.width(),
-                    std::max(left.height(), right.height()), NAN);
+  Image<float> both(left.width() + kGap_px + right.width(), std::max(left.height(), right.height()),
+                    NAN);
   for (int y = 0; y < left.height(); ++y)
     std::copy(left.Row(y).begin(), left.Row(y).end(), both.Row(y).begin());
   for (int y = 0; y < right.height(); ++y) {

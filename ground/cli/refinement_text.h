@@ -14,9 +14,7 @@ struct RefinementVerdict {
   DelayVerdict geometry = DelayVerdict::kNotAssessed;  ///< Pose and principal point.
   DelayVerdict delay = DelayVerdict::kNotAssessed;
 
-  bool Moved() const {
-    return geometry == DelayVerdict::kMoved || delay == DelayVerdict::kMoved;
-  }
+  bool Moved() const { return geometry == DelayVerdict::kMoved || delay == DelayVerdict::kMoved; }
 };
 
 /// Moved: by more than `max_shift_s`, or half a pixel in the image, and more than three standard

@@ -147,7 +147,8 @@ Result<TrackedRecording> TrackedRecording::Read(const std::filesystem::path& rec
   return tracked;
 }
 
-Result<double> DelayInStamps(std::optional<double> applied_delay_s, const std::optional<Rig>& used) {
+Result<double> DelayInStamps(std::optional<double> applied_delay_s,
+                             const std::optional<Rig>& used) {
   // The ground records what an edge sent, and the edge knows which delay it added: its
   // calibration's.
   if (applied_delay_s) return *applied_delay_s;

@@ -34,8 +34,8 @@ Status CheckFits(const Rig& rig, const Rig& recorded) {
 Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
                                               const GroundOptions& options,
                                               const std::function<void(double)>& progress) {
-  const Result<TrackedRecording> tracked = TrackedRecording::Read(
-      input.recording, options, PartOf(progress, 0.0, kTracked));
+  const Result<TrackedRecording> tracked =
+      TrackedRecording::Read(input.recording, options, PartOf(progress, 0.0, kTracked));
   if (!tracked) return Err(tracked.error());
   RecordingRefinement result;
   result.rig = input.rig.value_or(tracked->rig());
@@ -45,9 +45,9 @@ Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
   if (!delay_s) return Err(delay_s.error().WithContext(input.recording.string()));
   result.delay_in_stamps_s = *delay_s;
   // A recording's own calibration says what is still to be added to its stamps.
-  const ThermalPlacement before{*result.rig.thermal, *result.rig.T_thermal_depth,
-                                input.rig ? result.rig.thermal_delay_s - *delay_s
-                                          : result.rig.thermal_delay_s};
+  const ThermalPlacement before{
+      *result.rig.thermal, *result.rig.T_thermal_depth,
+      input.rig ? result.rig.thermal_delay_s - *delay_s : result.rig.thermal_delay_s};
   const ScanModel model = tracked->model();
   ScanViews views;
   const LookAgain look_again = [&](const ThermalPlacement& placement, double range_s) {
@@ -57,9 +57,8 @@ Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
     views.frames = tracked->frames();
     return AddSurface(model, kSampledPoints, range_s, views, {});
   };
-  Result<Refinement> refined =
-      RefinePlacement(views, before, input.prior, look_again, model.pool,
-                      PartOf(progress, kTracked, kRefined));
+  Result<Refinement> refined = RefinePlacement(views, before, input.prior, look_again, model.pool,
+                                               PartOf(progress, kTracked, kRefined));
   if (!refined) return Err(refined.error().WithContext(input.recording.string()));
   result.refinement = std::move(*refined);
   if (input.with_picture) {

@@ -1,0 +1,180 @@
+// `isotherm calibrate refine` and `isotherm calibrate check`, as a user runs them.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <variant>
+
+#include "common/recording/recording.h"
+#include "common/rig/rig_calibration.h"
+#include "tests/support/tool.h"
+
+namespace isotherm::testing {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Puts a rig's thermal camera elsewhere: a turn of one degree, 8 mm, 20 ms, 6 px.
+Rig Disturbed(const Rig& right, const Eigen::Vector3d& turn_about, const Eigen::Vector3d& towards,
+              double delay_s, const Eigen::Vector2d& principal_px) {
+  Rig rig = right;
+  rig.T_thermal_depth->linear() =
+      Eigen::AngleAxisd(kDegree, turn_about.normalized()).toRotationMatrix() *
+      right.T_thermal_depth->linear();
+  rig.T_thermal_depth->translation() += 0.008 * towards.normalized();
+  rig.thermal_delay_s += delay_s;
+  rig.thermal->cx += principal_px.x();
+  rig.thermal->cy += principal_px.y();
+  return rig;
+}
+
+Rig TurnedBy(const Rig& right, double angle_deg, const Eigen::Vector3d& about) {
+  Rig rig = right;
+  rig.T_thermal_depth->linear() =
+      Eigen::AngleAxisd(kDegree * angle_deg, about.normalized()).toRotationMatrix() *
+      right.T_thermal_depth->linear();
+  return rig;
+}
+
+class RefineToolTest : public ToolRun {
+ protected:
+  Rig Recorded(const std::string& name) const {
+    auto reader = RecordingReader::Open(folder_ / name);
+    EXPECT_TRUE(reader) << reader.error().message();
+    return (*reader)->ReadRig().value();
+  }
+
+  void WriteRig(const std::string& name, const Rig& rig) const { Write(name, ToText(rig)); }
+
+  /// A copy without the depth frames of 0.4 s of each second but the first.
+  void CopyWithGaps(const std::string& from, const std::string& to) const {
+    auto reader = RecordingReader::Open(folder_ / from);
+    ASSERT_TRUE(reader) << reader.error().message();
+    auto writer = RecordingWriter::Create(folder_ / to, {});
+    ASSERT_TRUE(writer) << writer.error().message();
+    ASSERT_TRUE((*writer)->Write((*reader)->ReadRig().value()).ok());
+    std::optional<CaptureTime> start;
+    while (true) {
+      auto item = (*reader)->Next();
+      ASSERT_TRUE(item) << item.error().message();
+      if (!*item) break;
+      if (const auto* depth = std::get_if<RecordedDepth>(&**item)) {
+        const CaptureTime time = depth->frame.header.capture_time;
+        if (!start) start = time;
+        const double at_s = ToSeconds(time - *start);
+        if (at_s > 1.0 && at_s - std::floor(at_s) > 0.6) continue;
+        ASSERT_TRUE((*writer)->Write(depth->frame, depth->arrival).ok());
+      }
+      if (const auto* thermal = std::get_if<RecordedThermal>(&**item)) {
+        ASSERT_TRUE((*writer)->Write(thermal->frame, thermal->arrival).ok());
+      }
+    }
+    ASSERT_TRUE((*writer)->Close().ok());
+  }
+
+  void ExpectNear(const Rig& found, const Rig& right) const {
+    const double turned_deg =
+        RotationAngle(*found.T_thermal_depth, *right.T_thermal_depth) / kDegree;
+    const double moved_m = TranslationDistance(*found.T_thermal_depth, *right.T_thermal_depth);
+    const double delay_s = found.thermal_delay_s - right.thermal_delay_s;
+    const double principal_px =
+        std::hypot(found.thermal->cx - right.thermal->cx, found.thermal->cy - right.thermal->cy);
+    std::printf("off by %.3f degrees, %.2f mm, %+.2f ms, %.2f px\n", turned_deg, 1e3 * moved_m,
+                1e3 * delay_s, principal_px);
+    EXPECT_LT(turned_deg, 0.1);
+    EXPECT_LT(moved_m, 0.001);
+    EXPECT_LT(std::abs(delay_s), 0.001);
+    EXPECT_LT(principal_px, 1.0);
+  }
+};
+
+TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
+  RunWell("simulate -o scan.mcap --duration 10 --seed 5");
+  const Rig right = Recorded("scan.mcap");
+  WriteRig("rig.textproto",
+           Disturbed(right, {1.0, -2.0, 1.0}, {-1.0, 1.0, 1.0}, 0.02, {4.0, -4.5}));
+  const std::string before = ReadAll(folder_ / "rig.textproto");
+  const Outcome proposed = Run(
+      "calibrate refine scan.mcap --rig rig.textproto -o new.textproto --picture both.png --json "
+      "all.json");
+  ASSERT_EQ(proposed.status, 0) << proposed.err;
+  EXPECT_THAT(proposed.out, AllOf(HasSubstr("translation z"), HasSubstr("uncertain by"),
+                                  HasSubstr("new.textproto: written")));
+  EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), before);
+  ExpectNear(LoadRigCalibration(folder_ / "new.textproto").value(), right);
+  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), HasSubstr("rx ry rz tx ty tz delay cx cy"));
+  EXPECT_EQ(ReadAll(folder_ / "both.png").substr(1, 3), "PNG");
+  const nlohmann::json all = nlohmann::json::parse(ReadAll(folder_ / "all.json"));
+  EXPECT_EQ(all["geometry"], "moved");
+  EXPECT_EQ(all["values"].size(), 9U);
+  EXPECT_EQ(all["covariance"].size(), 9U);
+  EXPECT_LT(all["held_out_after_k"], all["held_out_before_k"]);
+
+  // What agrees is not written again.
+  const Outcome again = Run("calibrate refine scan.mcap --rig new.textproto --apply");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("nothing to write"));
+  EXPECT_FALSE(fs::exists(folder_ / "new.textproto.bak"));
+}
+
+TEST_F(RefineToolTest, CheckFindsLittleAndIsNotAlarmedByGaps) {
+  RunWell("simulate -o scan.mcap --duration 10 --seed 6");
+  const Rig right = Recorded("scan.mcap");
+  CopyWithGaps("scan.mcap", "gaps.mcap");
+  const Outcome gaps = Run("calibrate check gaps.mcap");
+  EXPECT_NE(gaps.status, 1) << gaps.out;
+  EXPECT_THAT(gaps.out, AllOf(HasSubstr("pose"), HasSubstr("delay"), Not(HasSubstr("moved"))));
+
+  Rig moved = TurnedBy(right, 0.2, {1.0, 1.0, 0.5});
+  moved.thermal_delay_s += 0.005;
+  WriteRig("moved.textproto", moved);
+  const Outcome check = Run("calibrate check scan.mcap --rig moved.textproto");
+  EXPECT_EQ(check.status, 1) << check.err;
+  EXPECT_THAT(check.out, AllOf(HasSubstr("pose      moved by"), HasSubstr("delay     moved by"),
+                               HasSubstr("calibrate refine scan.mcap")));
+}
+
+TEST_F(RefineToolTest, WhatCannotBeToldIsSaid) {
+  RunWell("simulate -o still.mcap --duration 4 --scene plane");
+  const Outcome still = Run("calibrate refine still.mcap -o never.textproto");
+  EXPECT_EQ(still.status, kData);
+  EXPECT_THAT(still.err,
+              AllOf(HasSubstr("still.mcap"), HasSubstr("scan something with more shape")));
+  Rig other = Recorded("still.mcap");
+  other.thermal->width = 160;
+  other.thermal->cx = 80.0;
+  WriteRig("other.textproto", other);
+  const Outcome size = Run("calibrate check still.mcap --rig other.textproto");
+  EXPECT_NE(size.status, 0);
+  EXPECT_THAT(size.err, AllOf(HasSubstr("160 x 288"), HasSubstr("382 x 288")));
+  EXPECT_EQ(Run("calibrate refine still.mcap --apply").status, kUsage);
+  EXPECT_EQ(Run("calibrate refine still.mcap --prior-rotation -1").status, kUsage);
+  EXPECT_EQ(Run("calibrate refine nowhere.mcap").status, kNoInput);
+  EXPECT_FALSE(fs::exists(folder_ / "never.textproto"));
+}
+
+// Rendered by others.
+TEST_F(RefineToolTest, DisturbedRigOfRecordedDataIsFoundAgain) {
+  const char* set = std::getenv("ISOTHERM_DATA_DIR");
+  const fs::path data =
+      fs::path(set != nullptr ? set : ISOTHERM_SOURCE_DIR "/../shared/data") / "furnace_dev";
+  if (!fs::exists(data)) GTEST_SKIP() << "no test data; set ISOTHERM_DATA_DIR";
+  ASSERT_EQ(Run("import --from tum '" + data.string() + "' -o scan.mcap").status, 0);
+  const Rig right = Recorded("scan.mcap");
+  WriteRig("rig.textproto",
+           Disturbed(right, {0.2, 1.0, -0.4}, {1.0, 0.5, -1.0}, -0.02, {-5.0, 3.3}));
+  const std::string before = ReadAll(folder_ / "rig.textproto");
+  const Outcome refined = Run("calibrate refine scan.mcap --rig rig.textproto --apply");
+  ASSERT_EQ(refined.status, 0) << refined.err;
+  ExpectNear(LoadRigCalibration(folder_ / "rig.textproto").value(), right);
+  EXPECT_EQ(ReadAll(folder_ / "rig.textproto.bak"), before);
+}
+
+}  // namespace
+}  // namespace isotherm::testing
