@@ -8,6 +8,7 @@
 
 #include "common/frame/gaussian_blur.h"
 #include "common/radiometry/radiometry.h"
+#include "ground/calibration/thermal_sampling.h"
 
 namespace isotherm {
 namespace {
@@ -34,61 +35,12 @@ constexpr double kMinReflectivitySpread = 0.0001;
 constexpr double kMinDepth_m = 0.05;
 constexpr std::size_t kPointsPerTask = 128;
 
-struct Interpolated {
-  double kelvin = 0.0;
-  Eigen::Vector2d gradient_k_px;
-};
-
-/// Bilinear, with the derivative of just that; nullopt where the image has no value.
-std::optional<Interpolated> InterpolateAt(const Image<std::uint16_t>& image,
-                                          const RadiometricScale& scale,
-                                          const Eigen::Vector2d& pixel) {
-  if (!(pixel.x() >= 1.0 && pixel.y() >= 1.0 && pixel.x() < image.width() - 2 &&
-        pixel.y() < image.height() - 2))
-    return std::nullopt;
-  const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
-  const double a = pixel.x() - x, b = pixel.y() - y;
-  const double v00 = image.At(x, y), v10 = image.At(x + 1, y);
-  const double v01 = image.At(x, y + 1), v11 = image.At(x + 1, y + 1);
-  if (v00 == 0.0 || v10 == 0.0 || v01 == 0.0 || v11 == 0.0) return std::nullopt;
-  const double top = v00 + a * (v10 - v00), bottom = v01 + a * (v11 - v01);
-  const Eigen::Vector2d gradient((1.0 - b) * (v10 - v00) + b * (v11 - v01), bottom - top);
-  return Interpolated{scale.Kelvin(top + b * (bottom - top)), scale.kelvin_per_count * gradient};
-}
-
 /// Two unit vectors along a surface with the normal `n`.
 Eigen::Matrix<double, 3, 2> TangentsOf(const Eigen::Vector3d& n) {
   Eigen::Matrix<double, 3, 2> tangents;
   tangents.col(0) = n.unitOrthogonal();
   tangents.col(1) = n.cross(tangents.col(0));
   return tangents;
-}
-
-/// Blurred by known pixels only; pixels without a value stay without.
-Image<std::uint16_t> Blurred(const Image<std::uint16_t>& image, std::span<const float> weights) {
-  Image<float> values(image.width(), image.height()), known(image.width(), image.height());
-  Image<float> scratch;
-  bool all_known = true;
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      const std::uint16_t value = image.At(x, y);
-      values.At(x, y) = value;
-      known.At(x, y) = value != 0 ? 1.0F : 0.0F;
-      all_known = all_known && value != 0;
-    }
-  }
-  Blur(weights, values, scratch);
-  if (!all_known) Blur(weights, known, scratch);
-  Image<std::uint16_t> blurred(image.width(), image.height());
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      const float value = all_known ? values.At(x, y) : values.At(x, y) / known.At(x, y);
-      blurred.At(x, y) = image.At(x, y) == 0
-                             ? std::uint16_t{0}
-                             : static_cast<std::uint16_t>(std::lround(std::max(1.0F, value)));
-    }
-  }
-  return blurred;
 }
 
 }  // namespace
@@ -255,7 +207,7 @@ void TextureAlignment::BlurImages(double sigma_px) {
   pool_.ParallelFor(static_cast<int>(views_.frames.size()), [&](int index) {
     const auto i = static_cast<std::size_t>(index);
     if (!(distances_m[i] > 0.0)) return;
-    blurred_[i] = Blurred(*views_.frames[i].temperature_raw,
+    blurred_[i] = BlurKnownPixels(*views_.frames[i].temperature_raw,
                           GaussianWeights(sigma_px * usual_m / distances_m[i]));
   });
 }
@@ -313,7 +265,7 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
     const Eigen::Vector3d p_thermal = turned + placement.T_thermal_depth.translation();
     if (p_thermal.z() < kMinDepth_m) continue;
     const ProjectionDerivatives projection = ProjectWithDerivatives(placement.camera, p_thermal);
-    const auto seen = InterpolateAt(is_blurred_ ? blurred_[i] : *views_.frames[i].temperature_raw,
+    const auto seen = SampleThermal(is_blurred_ ? blurred_[i] : *views_.frames[i].temperature_raw,
                                     views_.frames[i].scale, projection.pixel);
     if (!seen) continue;
     const Eigen::Matrix<double, 2, 3> by_world_point =

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/frame/frame.h"
+#include "ground/calibration/thermal_sampling.h"
 
 namespace isotherm {
 namespace {
@@ -23,27 +24,6 @@ constexpr double kMinFrames = 8.0;
 // More parts cost time and memory (a sum per point and part) and add nothing to the bootstrap,
 // which resamples them.
 constexpr double kMaxParts = 40.0;
-
-struct Sample {
-  double celsius = 0.0;
-  double gradient_k_px = 0.0;
-};
-
-/// Bilinear value and central differences; nullopt where the image has no value.
-std::optional<Sample> SampleAt(const Image<std::uint16_t>& image, const RadiometricScale& scale,
-                               double u, double v) {
-  const int x = static_cast<int>(u), y = static_cast<int>(v);
-  if (u < 1.0 || v < 1.0 || x + 2 >= image.width() || y + 2 >= image.height()) return std::nullopt;
-  const double a = u - x, b = v - y;
-  const double v00 = image.At(x, y), v10 = image.At(x + 1, y);
-  const double v01 = image.At(x, y + 1), v11 = image.At(x + 1, y + 1);
-  if (v00 == 0.0 || v10 == 0.0 || v01 == 0.0 || v11 == 0.0) return std::nullopt;
-  const double top = v00 + a * (v10 - v00), bottom = v01 + a * (v11 - v01);
-  const double dx = (1.0 - b) * (v10 - v00) + b * (v11 - v01);
-  const double dy = bottom - top;
-  return Sample{scale.Kelvin(top + b * (bottom - top)) - kCelsiusZero_k,
-                std::hypot(dx, dy) * scale.kelvin_per_count};
-}
 
 }  // namespace
 
@@ -191,14 +171,14 @@ std::vector<TextureConsistency::PointSums> TextureConsistency::MeasurePart(
       if (i >= points) break;
       const auto pixel = Project(views_.thermal_camera, T_thermal_world * views_.points[i].p_world);
       if (!pixel) continue;
-      const std::optional<Sample> sample =
-          SampleAt(*frame.temperature_raw, frame.scale, pixel->x(), pixel->y());
+      const std::optional<ThermalSample> sample =
+          SampleThermal(*frame.temperature_raw, frame.scale, *pixel);
       if (!sample) continue;
-      const double celsius = sample->celsius - means_celsius_[i];
+      const double celsius = sample->kelvin - kCelsiusZero_k - means_celsius_[i];
       sums[i].count += 1.0;
       sums[i].value += celsius;
       sums[i].squares += celsius * celsius;
-      sums[i].gradient += sample->gradient_k_px;
+      sums[i].gradient += sample->gradient_k_px.norm();
     }
   }
   return sums;

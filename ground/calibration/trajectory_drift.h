@@ -29,7 +29,7 @@ class TrajectoryDrift {
   /// Where a time lies between two knots.
   struct Place {
     int first = 0;          ///< The first of the kPerKnot values of the knot before.
-    double fraction = 0.0;  ///< Of the way to the next one.
+    double fraction = 0.0;  ///< This part of the way to the next one.
   };
   Place At(CaptureTime time) const;
   /// The motion of the world at this place.

@@ -41,7 +41,7 @@ past a wall little. Uncertainties hold what drifting poses can be taken for.
 Without --apply or --output nothing is written. The file as it was is kept beside it (FILE.bak).
 
 Examples:
-  isotherm calibrate refine scan.mcap --rig rig.textproto --picture refined.png
+  isotherm calibrate refine scan.mcap --rig rig.textproto --render refined.png
   isotherm calibrate refine scan.mcap --rig rig.textproto --apply
   isotherm calibrate refine scan.mcap --rig rig.textproto --prior-principal-point 0)";
 
@@ -55,7 +55,7 @@ Examples:
   isotherm calibrate check scan.mcap --rig rig.textproto)";
 
 struct RefineArguments {
-  std::string recording, rig, output, picture, json;
+  std::string recording, rig, output, render, json;
   double rotation_deg = 1.0, translation_mm = 10.0, delay_ms = 20.0, principal_point_px = 5.0;
   ConfigurationArguments configuration;
   bool apply = false;
@@ -84,7 +84,7 @@ class RefineRun {
     input.prior = {arguments_.rotation_deg * std::numbers::pi / 180.0,
                    1e-3 * arguments_.translation_mm, 1e-3 * arguments_.delay_ms,
                    arguments_.principal_point_px};
-    input.with_picture = !arguments_.picture.empty();
+    input.with_rendering = !arguments_.render.empty();
     ProgressBar bar("calibrating", 0, "");
     Result<RecordingRefinement> refined =
         RefineByRecording(input, options_, [&](double fraction) { bar.Update(fraction); });
@@ -147,12 +147,12 @@ Status WriteExtras(const RefineArguments& arguments, const RefineRun& run) {
         WriteFile(arguments.json, JsonText(RefinementJson(run.refined(), run.verdict()))));
     fmt::print("{}: written\n", arguments.json);
   }
-  if (!arguments.picture.empty()) {
-    const RgbImage picture =
+  if (!arguments.render.empty()) {
+    const RgbImage rendering =
         TemperatureRendering(BeforeAndAfter(run.refined()), "before and after");
-    ISOTHERM_RETURN_IF_ERROR(WritePng(picture, arguments.picture));
+    ISOTHERM_RETURN_IF_ERROR(WritePng(rendering, arguments.render));
     fmt::print("{}: the mean of all images on the surface, before (left) and after (right)\n",
-               arguments.picture);
+               arguments.render);
   }
   return OkStatus();
 }
@@ -230,7 +230,7 @@ void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
   command
       ->add_option("-o,--output", arguments->output, "Write the refined calibration here instead")
       ->excludes(apply_option);
-  command->add_option("--picture", arguments->picture,
+  command->add_option("--render", arguments->render,
                       "Write the surface with the mean of all images before and after (.png)");
   command->add_option("--json", arguments->json, "Write all values and their covariance (.json)");
   AddPriorArguments(*command, *arguments);

@@ -31,7 +31,7 @@ std::string CheckText(const RecordingRefinement& refined, const RefinementVerdic
 /// The same and the whole covariance, in SI units and pixels.
 nlohmann::json RefinementJson(const RecordingRefinement& refined, const RefinementVerdict& verdict);
 
-/// The two pictures beside each other.
+/// The two renderings beside each other.
 Image<float> BeforeAndAfter(const RecordingRefinement& refined);
 
 }  // namespace isotherm

@@ -6,7 +6,7 @@
 
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/scan_views.h"
-#include "ground/calibration/texture_picture.h"
+#include "ground/calibration/texture_rendering.h"
 #include "ground/offline/calibration_scan.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/scan/scan_model.h"
@@ -61,7 +61,7 @@ Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
                                                PartOf(progress, kTracked, kRefined));
   if (!refined) return Err(refined.error().WithContext(input.recording.string()));
   result.refinement = std::move(*refined);
-  if (input.with_picture) {
+  if (input.with_rendering) {
     const std::size_t shown = WidestFrame(views);
     result.before_celsius = MeanTexture(model.tsdf(), views, before, shown, model.pool);
     result.after_celsius =

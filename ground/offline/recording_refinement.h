@@ -18,7 +18,7 @@ struct RefinementInput {
   std::filesystem::path recording;
   std::optional<Rig> rig;  ///< The calibration to refine; nullopt: the recording's.
   RefinementPrior prior;
-  bool with_picture = false;
+  bool with_rendering = false;
 };
 
 /// Holds what a recording says about its rig.
@@ -27,7 +27,7 @@ struct RecordingRefinement {
   Refinement refinement;
   /// The delay that the recording's stamps contain: those of the placements are added to it.
   double delay_in_stamps_s = 0.0;
-  /// With a picture: the mean of all images before and after (MeanTexture).
+  /// With a rendering: the mean of all images before and after (MeanTexture).
   Image<float> before_celsius, after_celsius;
 
   double DelayBefore() const { return delay_in_stamps_s + refinement.before.delay_s; }

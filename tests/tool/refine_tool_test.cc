@@ -101,7 +101,7 @@ TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
            Disturbed(right, {1.0, -2.0, 1.0}, {-1.0, 1.0, 1.0}, 0.02, {4.0, -4.5}));
   const std::string before = ReadAll(folder_ / "rig.textproto");
   const Outcome proposed = Run(
-      "calibrate refine scan.mcap --rig rig.textproto -o new.textproto --picture both.png --json "
+      "calibrate refine scan.mcap --rig rig.textproto -o new.textproto --render both.png --json "
       "all.json");
   ASSERT_EQ(proposed.status, 0) << proposed.err;
   EXPECT_THAT(proposed.out, AllOf(HasSubstr("translation z"), HasSubstr("uncertain by"),

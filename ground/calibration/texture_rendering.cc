@@ -1,4 +1,4 @@
-#include "ground/calibration/texture_picture.h"
+#include "ground/calibration/texture_rendering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,12 @@ std::optional<double> NearestCelsius(const StampedThermal& frame, const Eigen::V
 Image<float> MeanTexture(const TsdfVolume& tsdf, const ScanViews& views,
                          const ThermalPlacement& placement, std::size_t shown, ThreadPool& pool) {
   const CameraModel camera = placement.camera.WithoutDistortion();
-  Image<float> picture(camera.width, camera.height, NAN);
+  Image<float> rendering(camera.width, camera.height, NAN);
   const auto pose_at = [&](const StampedThermal& frame) {
     return InterpolatePose(views.trajectory, frame.time + FromSeconds(placement.delay_s));
   };
   const auto T_world_depth = pose_at(views.frames[shown]);
-  if (!T_world_depth) return picture;
+  if (!T_world_depth) return rendering;
   SurfaceMaps maps;
   Raycaster().Cast(tsdf, camera, InFirstMap(*T_world_depth * placement.T_thermal_depth.inverse()),
                    kMinWeight, pool, maps);
@@ -83,9 +83,9 @@ Image<float> MeanTexture(const TsdfVolume& tsdf, const ScanViews& views,
   }
   for (std::size_t i = 0; i < means.size(); ++i) {
     if (means[i].count > 0)
-      picture.pixels()[pixels[i]] = static_cast<float>(means[i].celsius / means[i].count);
+      rendering.pixels()[pixels[i]] = static_cast<float>(means[i].celsius / means[i].count);
   }
-  return picture;
+  return rendering;
 }
 
 std::size_t WidestFrame(const ScanViews& views) {
