@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <vector>
 
 namespace isotherm {
 namespace {
@@ -10,66 +11,90 @@ namespace {
 // The images' information over the prior's: half the standard deviation.
 constexpr double kMinInformation = 4.0;
 
-/// The equations in units of the prior: all standard deviations are one.
-struct Whitened {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-};
-
-/// How many times larger than that of independent samples the variance of the gradient is: its mean
-/// over all directions, from the scatter of the parts. Not below one.
-double VarianceInflation(const AlignmentEquations& equations, const Eigen::VectorXd& sigma,
-                         const Eigen::MatrixXd& information) {
-  const Eigen::Index size = sigma.size();
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(size, size);
-  double parts = 0.0;
-  for (const Eigen::VectorXd& gradient : equations.part_gradients)
-    parts += gradient.isZero(0.0) ? 0.0 : 1.0;
-  if (parts < 2.0) return 1.0;
-  for (const Eigen::VectorXd& gradient : equations.part_gradients) {
-    if (gradient.isZero(0.0)) continue;
-    const Eigen::VectorXd deviation = sigma.asDiagonal() * (gradient - equations.gradient / parts);
-    scatter += deviation * deviation.transpose();
-  }
-  const Eigen::MatrixXd with_prior = information + Eigen::MatrixXd::Identity(size, size);
-  const double inflation = with_prior.ldlt().solve(scatter).trace() * parts / (parts - 1.0);
-  return std::max(1.0, inflation / static_cast<double>(size));
+/// In units of the prior; what has none is fixed, and has not moved.
+Eigen::VectorXd Standardized(const Eigen::VectorXd& values, const Eigen::VectorXd& sigma) {
+  return (sigma.array() > 0.0).select(values.array() / sigma.array().max(1e-300), 0.0);
 }
 
-Whitened Whiten(const AlignmentEquations& equations, const Eigen::VectorXd& sigma) {
-  Whitened whitened{sigma.asDiagonal() * equations.information * sigma.asDiagonal(),
-                    sigma.asDiagonal() * equations.gradient};
-  const double inflation = VarianceInflation(equations, sigma, whitened.information);
-  whitened.information /= inflation;
-  whitened.gradient /= inflation;
-  return whitened;
+/// The equations of a placement in units of the prior, with the drift that suits each placement
+/// best (Schur complement): `drift` = drift_at_rest + drift_by_placement * placement.
+struct Reduced {
+  PlacementMatrix information;
+  PlacementVector gradient;
+  Eigen::VectorXd drift_at_rest;
+  Eigen::MatrixXd drift_by_placement;
+};
+
+/// `information` and `gradient` are divided by `inflation`.
+Reduced Reduce(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
+               const Eigen::VectorXd& drift, double inflation) {
+  const Eigen::Index knots = drift.size();
+  Reduced reduced;
+  reduced.information =
+      information.topLeftCorner<kPlacementParameters, kPlacementParameters>() / inflation;
+  reduced.gradient = gradient.head<kPlacementParameters>() / inflation;
+  reduced.drift_at_rest = Eigen::VectorXd::Zero(knots);
+  reduced.drift_by_placement = Eigen::MatrixXd::Zero(knots, kPlacementParameters);
+  if (knots == 0) return reduced;
+  const Eigen::MatrixXd mixed =
+      information.bottomLeftCorner(knots, kPlacementParameters) / inflation;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(information.bottomRightCorner(knots, knots) /
+                                                inflation +
+                                            Eigen::MatrixXd::Identity(knots, knots));
+  reduced.drift_at_rest = -solver.solve(gradient.tail(knots) / inflation + drift);
+  reduced.drift_by_placement = -solver.solve(mixed);
+  reduced.information += mixed.transpose() * reduced.drift_by_placement;
+  reduced.gradient += mixed.transpose() * reduced.drift_at_rest;
+  return reduced;
+}
+
+/// How many times larger than that of independent samples the variance of the placement's gradient
+/// is, the drift aside: the mean over the directions that are told, from the scatter of the parts.
+/// Not below one.
+double VarianceInflation(const AlignmentEquations& equations, const Eigen::VectorXd& sigma,
+                         const Reduced& reduced) {
+  std::vector<PlacementVector> parts;
+  PlacementVector mean = PlacementVector::Zero();
+  for (const Eigen::VectorXd& gradient : equations.part_gradients) {
+    if (gradient.isZero(0.0)) continue;
+    const Eigen::VectorXd whitened = sigma.cwiseProduct(gradient);
+    parts.push_back(whitened.head<kPlacementParameters>() +
+                    reduced.drift_by_placement.transpose() *
+                        whitened.tail(reduced.drift_at_rest.size()));
+    mean += parts.back();
+  }
+  if (parts.size() < 2) return 1.0;
+  const auto count = static_cast<double>(parts.size());
+  mean /= count;
+  PlacementMatrix scatter = PlacementMatrix::Zero();
+  for (const PlacementVector& part : parts)
+    scatter += (part - mean) * (part - mean).transpose() * count / (count - 1.0);
+  const Eigen::SelfAdjointEigenSolver<PlacementMatrix> directions(reduced.information);
+  double ratios = 0.0, told = 0.0;
+  for (int i = 0; i < kPlacementParameters; ++i) {
+    if (directions.eigenvalues()[i] < kMinInformation) continue;
+    const PlacementVector direction = directions.eigenvectors().col(i);
+    ratios += direction.dot(scatter * direction) / directions.eigenvalues()[i];
+    told += 1.0;
+  }
+  return told > 0.0 ? std::max(1.0, ratios / told) : 1.0;
 }
 
 }  // namespace
 
 AlignmentStep SolveAlignment(const AlignmentEquations& equations, const AlignmentPrior& prior,
                              const PlacementVector& correction, const Eigen::VectorXd& drift) {
-  const Eigen::Index knots = drift.size();
-  Eigen::VectorXd sigma(kPlacementParameters + knots);
+  Eigen::VectorXd sigma(kPlacementParameters + drift.size());
   sigma << prior.placement_sigma, prior.drift_sigma;
-  const Whitened all = Whiten(equations, sigma);
-  // The drift is solved for as a function of the placement (Schur complement).
-  PlacementMatrix information =
-      all.information.topLeftCorner<kPlacementParameters, kPlacementParameters>();
-  PlacementVector gradient = all.gradient.head<kPlacementParameters>();
-  Eigen::VectorXd drift_step = Eigen::VectorXd::Zero(knots);
-  Eigen::MatrixXd drift_by_placement = Eigen::MatrixXd::Zero(knots, kPlacementParameters);
-  if (knots > 0) {
-    const Eigen::MatrixXd mixed = all.information.bottomLeftCorner(knots, kPlacementParameters);
-    const Eigen::LDLT<Eigen::MatrixXd> solver(all.information.bottomRightCorner(knots, knots) +
-                                              Eigen::MatrixXd::Identity(knots, knots));
-    drift_step = -solver.solve(all.gradient.tail(knots) + drift.cwiseQuotient(prior.drift_sigma));
-    drift_by_placement = -solver.solve(mixed);
-    information += mixed.transpose() * drift_by_placement;
-    gradient += mixed.transpose() * drift_step;
-  }
-  const PlacementVector so_far = correction.cwiseQuotient(prior.placement_sigma);
-  const Eigen::SelfAdjointEigenSolver<PlacementMatrix> directions(information);
+  const Eigen::MatrixXd information =
+      sigma.asDiagonal() * equations.information * sigma.asDiagonal();
+  const Eigen::VectorXd gradient = sigma.cwiseProduct(equations.gradient);
+  const Eigen::VectorXd drift_so_far = Standardized(drift, prior.drift_sigma);
+  const double inflation =
+      VarianceInflation(equations, sigma, Reduce(information, gradient, drift_so_far, 1.0));
+  const Reduced reduced = Reduce(information, gradient, drift_so_far, inflation);
+  const PlacementVector so_far = Standardized(correction, prior.placement_sigma);
+  const Eigen::SelfAdjointEigenSolver<PlacementMatrix> directions(reduced.information);
   AlignmentStep step;
   PlacementVector placement = PlacementVector::Zero();
   PlacementMatrix covariance = PlacementMatrix::Zero();
@@ -78,14 +103,16 @@ AlignmentStep SolveAlignment(const AlignmentEquations& equations, const Alignmen
     const double told = directions.eigenvalues()[i];
     const bool observed = told >= kMinInformation;
     covariance += (observed ? 1.0 / (told + 1.0) : 1.0) * direction * direction.transpose();
-    if (!observed) continue;
-    ++step.observed_directions;
-    placement -= direction.dot(gradient + so_far) / (told + 1.0) * direction;
+    // Along the others, back to where the prior is.
+    placement -= observed ? direction.dot(reduced.gradient + so_far) / (told + 1.0) * direction
+                          : direction.dot(so_far) * direction;
+    step.observed_directions += observed ? 1 : 0;
   }
   step.length = placement.norm();
   placement *= std::min(1.0, 1.0 / std::max(step.length, 1e-12));
   step.placement = prior.placement_sigma.cwiseProduct(placement);
-  step.drift = prior.drift_sigma.cwiseProduct(drift_step + drift_by_placement * placement);
+  step.drift = prior.drift_sigma.cwiseProduct(reduced.drift_at_rest +
+                                              reduced.drift_by_placement * placement);
   step.covariance =
       prior.placement_sigma.asDiagonal() * covariance * prior.placement_sigma.asDiagonal();
   return step;

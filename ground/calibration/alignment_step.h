@@ -27,9 +27,10 @@ struct AlignmentPrior {
 
 /// Solves the equations together with the prior, after a correction and a drift so far. Samples are
 /// not independent of each other (emissivity, the detector's pattern): how much the gradients of
-/// parts of the scan scatter says how much less they tell. Directions of the placement that the
-/// images tell less than twice as certainly as the prior are left alone: there the result would be
-/// mostly chance. The step is at most one standard deviation of the prior long.
+/// parts of the scan scatter says how much less they tell. Along directions of the placement that
+/// the images tell less than twice as certainly as the prior the step leads back to the prior:
+/// there the result would be mostly chance. The step is at most one standard deviation of the prior
+/// long.
 AlignmentStep SolveAlignment(const AlignmentEquations& equations, const AlignmentPrior& prior,
                              const PlacementVector& correction, const Eigen::VectorXd& drift);
 

@@ -87,5 +87,46 @@ TEST(AlignmentStepTest, DriftMakesUncertainWhatItCouldPassFor) {
   EXPECT_NEAR(shared.drift[0], 0.4 * 0.01 / 1.01, 0.001);
 }
 
+/// A quadratic's minimum does not depend on where it is looked at from.
+TEST(AlignmentStepTest, ResultDoesNotDependOnTheWayThere) {
+  Eigen::VectorXd minimum = Eigen::VectorXd::Constant(kAll, 0.2);
+  const Eigen::MatrixXd information = 99.0 * Eigen::MatrixXd::Identity(kAll, kAll);
+  PlacementVector correction = PlacementVector::Zero();
+  correction[kDelay] = 0.5;
+  const Eigen::VectorXd drift = Eigen::VectorXd::Constant(kKnots, -0.1);
+  Eigen::VectorXd at(kAll);
+  at << correction, drift;
+  const AlignmentStep step =
+      SolveAlignment(Quadratic(information, minimum - at, 1.0), UnitPrior(1.0), correction, drift);
+  EXPECT_NEAR(correction[kDelay] + step.placement[kDelay], 0.99 * 0.2, 0.003);
+  EXPECT_NEAR(correction[kRotationX] + step.placement[kRotationX], 0.99 * 0.2, 0.003);
+  EXPECT_NEAR(drift[0] + step.drift[0], 0.99 * 0.2, 0.003);
+}
+
+/// Blurred images may move what sharp ones do not tell: it goes back.
+TEST(AlignmentStepTest, WhatIsNotToldLeadsBackToThePrior) {
+  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kAll, kAll);
+  PlacementVector correction = PlacementVector::Zero();
+  correction[kTranslationX] = 0.7;
+  const AlignmentStep step =
+      SolveAlignment(Quadratic(information, Eigen::VectorXd::Constant(kAll, 5.0), 1.0),
+                     UnitPrior(1.0), correction, Eigen::VectorXd::Zero(kKnots));
+  EXPECT_EQ(step.observed_directions, 0);
+  EXPECT_NEAR(correction[kTranslationX] + step.placement[kTranslationX], 0.0, 1e-9);
+  EXPECT_NEAR(step.placement[kRotationX], 0.0, 1e-9);
+}
+
+TEST(AlignmentStepTest, PriorOfZeroFixes) {
+  AlignmentPrior prior = UnitPrior(0.0);
+  prior.placement_sigma[kDelay] = 0.0;
+  const Eigen::MatrixXd information = 1000.0 * Eigen::MatrixXd::Identity(kAll, kAll);
+  const AlignmentStep step =
+      SolveAlignment(Quadratic(information, Eigen::VectorXd::Constant(kAll, 0.2), 1.0), prior,
+                     PlacementVector::Zero(), Eigen::VectorXd::Zero(kKnots));
+  EXPECT_EQ(step.placement[kDelay], 0.0);
+  EXPECT_NEAR(step.placement[kRotationX], 0.2, 0.01);
+  EXPECT_TRUE(step.drift.isZero(0.0));
+}
+
 }  // namespace
 }  // namespace isotherm

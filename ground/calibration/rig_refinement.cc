@@ -9,6 +9,7 @@
 
 #include "ground/calibration/alignment_step.h"
 #include "ground/calibration/image_motion.h"
+#include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/trajectory_drift.h"
 
 namespace isotherm {
@@ -73,8 +74,8 @@ Eigen::VectorXd DriftSigmas(const ScanViews& views, const TrajectoryDrift& drift
   const double turn_rad = shift_m * PixelsPerMetre(views).value_or(0.0) / views.thermal_camera.fx;
   Eigen::VectorXd sigmas(drift.size());
   for (int i = 0; i < drift.size(); i += TrajectoryDrift::kPerKnot) {
-    sigmas.segment<3>(i).setConstant(turn_rad);
-    sigmas.segment<3>(i + 3).setConstant(shift_m);
+    sigmas.segment<3>(i).setConstant(shift_m);
+    sigmas.segment<3>(i + 3).setConstant(turn_rad);
   }
   return sigmas;
 }
@@ -155,21 +156,20 @@ class Refiner {
       drift.Add(step.drift);
       if (progress) progress((i + 1.0) / kMaxIterations);
       // The drift follows the placement.
-      if (step.length < (level.with_drift ? kConverged : kNearEnough) && i > 0) break;
+      if (step.length < (level.with_drift ? kConverged : kNearEnough) && i > 0) return OkStatus();
     }
-    return OkStatus();
+    if (!level.with_drift) return OkStatus();
+    return FailedPrecondition(
+        fmt::format("the search does not settle within {} steps: scan for longer, to and fro, "
+                    "nearer and farther",
+                    kMaxIterations));
   }
 
   /// After the last level.
   Refinement Finish() {
     TextureAlignment alignment(views_, true, pool_);
-    const auto at = [&](const ThermalPlacement& placement) {
-      return alignment.Linearize(placement, {}, kHeldOutPoints);
-    };
-    const AlignmentEquations before = at(refinement_.before), after = at(refinement_.after);
-    refinement_.held_out_before_k = before.held_out_k;
-    refinement_.held_out_after_k = after.held_out_k;
-    refinement_.improves_held_out = after.held_out_loss < before.held_out_loss;
+    refinement_.held_out =
+        alignment.CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
     refinement_.correction = CorrectionBetween(refinement_.before, refinement_.after);
     refinement_.covariance.diagonal() +=
         CommonVariances().cwiseMin(refinement_.prior_sigma.cwiseAbs2());
@@ -211,14 +211,14 @@ Result<Refinement> RefinePlacement(const ScanViews& views, const ThermalPlacemen
   constexpr double kLevelCount = std::size(kLevels);
   double done = 0.0;
   for (const Level& level : kLevels) {
-    if (Status status = look_again(refiner.placement(), level.range_s); !status.ok())
-      return Err(status);
-    const auto part = [&, done](double fraction) {
-      if (progress) progress((done + 0.5 + 0.5 * fraction) / kLevelCount);
-    };
-    if (Status status = refiner.Refine(level, part); !status.ok()) return Err(status);
+    const Status seen =
+        look_again(refiner.placement(), level.range_s,
+                   PartOf(progress, done / kLevelCount, (done + 0.5) / kLevelCount));
+    if (!seen.ok()) return Err(seen);
+    const Status refined = refiner.Refine(
+        level, PartOf(progress, (done + 0.5) / kLevelCount, (done + 1.0) / kLevelCount));
+    if (!refined.ok()) return Err(refined);
     done += 1.0;
-    if (progress) progress(done / kLevelCount);
   }
   return refiner.Finish();
 }

@@ -11,7 +11,7 @@
 namespace isotherm {
 
 /// Says how far values may be off, one standard deviation along each axis. What a scan cannot tell
-/// at least twice as certainly stays as it was.
+/// at least twice as certainly stays as it was; 0 keeps a value.
 struct RefinementPrior {
   double rotation_rad = 0.0175;  ///< One degree.
   double translation_m = 0.010;
@@ -34,22 +34,24 @@ struct Refinement {
   int observed_directions = 0;  ///< How many of kPlacementParameters the scan tells.
   /// How far the scanned points move in the thermal images, the delay apart.
   ImageShift shift;
-  /// The third of the scan that was held out differs by this from what the rest says, kelvin.
-  double held_out_before_k = 0.0, held_out_after_k = 0.0;
-  /// It agrees better with the rest afterwards (AlignmentEquations::held_out_loss).
-  bool improves_held_out = false;
+  /// How the third of the scan that was held out fits the rest.
+  HeldOutComparison held_out;
   std::size_t frames = 0;  ///< Thermal frames that were compared, those held out too.
   int textured_points = 0, points = 0;
 
   /// One standard deviation of the correction of one value.
   double Sigma(PlacementParameter parameter) const;
+  /// Returns whether one value was to be kept.
+  bool Keeps(PlacementParameter parameter) const { return prior_sigma[parameter] == 0.0; }
   /// Returns whether the scan says more about one value than was known before.
   bool Tells(PlacementParameter parameter) const;
 };
 
 /// Sees the scan again from a placement: fills the views' camera, pose between the cameras, delay,
-/// points and visibility. `range_s` is how far the delay may be off.
-using LookAgain = std::function<Status(const ThermalPlacement& placement, double range_s)>;
+/// points and visibility. `range_s` is how far the delay may be off; `progress` gets the fraction
+/// done, 0..1.
+using LookAgain = std::function<Status(const ThermalPlacement& placement, double range_s,
+                                       const std::function<void(double)>& progress)>;
 
 /// Finds the placement of the thermal camera at which the images of `views` agree best about the
 /// surface, from blurred to sharp images, beginning at `before`; at last together with what the

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "common/base/noise.h"
+#include "common/radiometry/radiometry.h"
 
 namespace isotherm {
 namespace {
@@ -26,6 +28,8 @@ struct WallScan {
   std::uint64_t seed = 1;
   double fold = 0.5;  ///< Slope of the wall to both sides of its edge; 0: flat.
   double contrast_k = 6.0;
+  /// Above 1: warmer by 150 K, and seen as a smooth dielectric before surroundings at 20 degrees C.
+  double refractive_index = 1.0;
   double motion = 1.0;        ///< 0: the rig rests.
   bool turns = true;          ///< It turns and goes nearer and farther, beside its swing.
   double nuc_offset_k = 0.0;  ///< The second half of the scan, after a NUC, is as much warmer.
@@ -70,6 +74,21 @@ Eigen::Vector3d MeetWall(const Eigen::Vector3d& from, const Eigen::Vector3d& ray
   return from;
 }
 
+Eigen::Vector3d WallNormal(double x_m, const WallScan& scan) {
+  return Eigen::Vector3d(scan.fold * (x_m < 0.0 ? -1.0 : 1.0), 0.0, -1.0).normalized();
+}
+
+/// Apparent temperature along a ray; radiance is taken as linear in temperature.
+double SeenCelsius(const Eigen::Vector3d& p_world, const Eigen::Vector3d& ray,
+                   const WallScan& scan) {
+  const double own = WallCelsius(p_world.x(), p_world.y(), scan);
+  if (scan.refractive_index == 1.0) return own;
+  constexpr double kHotter_k = 150.0, kSurround_celsius = 20.0;
+  const double cosine = -ray.normalized().dot(WallNormal(p_world.x(), scan));
+  const double reflected = FresnelReflectivity(std::acos(cosine), scan.refractive_index, 0.0);
+  return (1.0 - reflected) * (own + kHotter_k) + reflected * kSurround_celsius;
+}
+
 ThermalPlacement TruePlacement() {
   Eigen::Matrix<double, 6, 1> twist;
   twist << 0.05, 0.03, -0.01, 0.02, -0.03, 0.04;
@@ -100,7 +119,8 @@ Image<std::uint16_t> RenderWall(double time_s, const WallScan& scan, double offs
                                          T_world_thermal.linear() * normalized.homogeneous(), scan);
       const double noise_k =
           0.05 * NormalNoise(stream, static_cast<std::uint64_t>(v * kColumns + u));
-      const double celsius = WallCelsius(p.x(), p.y(), scan) + offset_k + noise_k;
+      const double celsius =
+          SeenCelsius(p, p - T_world_thermal.translation(), scan) + offset_k + noise_k;
       image.At(u, v) = static_cast<std::uint16_t>(std::lround(100.0 * (celsius + 273.15)));
     }
   }
@@ -127,8 +147,7 @@ ScanViews ScanOf(const WallScan& scan) {
   for (std::uint64_t i = 0; i < 800; ++i) {
     const double x_m = 0.9 * (UniformNoise(5, 2 * i) - 0.5);
     const double y_m = 0.7 * (UniformNoise(5, 2 * i + 1) - 0.5);
-    const Eigen::Vector3d normal(scan.fold * (x_m < 0.0 ? -1.0 : 1.0), 0.0, -1.0);
-    views.points.push_back({WallPoint(x_m, y_m, scan), normal.normalized()});
+    views.points.push_back({WallPoint(x_m, y_m, scan), WallNormal(x_m, scan)});
   }
   for (int i = 2; i < static_cast<int>(kScan_s * kThermalRate_hz) - 2; ++i) {
     const double time_s = i / kThermalRate_hz;
@@ -165,13 +184,15 @@ Status Look(ScanViews& views, const ThermalPlacement& placement) {
   return OkStatus();
 }
 
-Result<Refinement> RefineWall(const WallScan& scan, const PlacementVector& off_by) {
+Result<Refinement> RefineWall(const WallScan& scan, const PlacementVector& off_by,
+                              const RefinementPrior& prior = {}) {
   ScanViews views = ScanOf(scan);
   ThreadPool pool(2);
-  const LookAgain look_again = [&](const ThermalPlacement& placement, double) {
+  const LookAgain look_again = [&](const ThermalPlacement& placement, double,
+                                   const std::function<void(double)>&) {
     return Look(views, placement);
   };
-  return RefinePlacement(views, Corrected(TruePlacement(), off_by), {}, look_again, pool, {});
+  return RefinePlacement(views, Corrected(TruePlacement(), off_by), prior, look_again, pool, {});
 }
 
 PlacementVector SomewhatOff(std::uint64_t seed) {
@@ -208,7 +229,7 @@ TEST(RigRefinementTest, PlacementIsFoundAgain) {
     EXPECT_LT(left.tail<2>().norm(), 0.3);
     EXPECT_EQ(refined->observed_directions, kPlacementParameters);
     EXPECT_GT(refined->shift.rms_px, 1.0);
-    EXPECT_LT(refined->held_out_after_k, 0.5 * refined->held_out_before_k);
+    EXPECT_LT(refined->held_out.after_k, 0.5 * refined->held_out.before_k);
     squares += Errors(*refined).squaredNorm() / (3.0 * kPlacementParameters);
   }
   // Uncertainties are neither too small nor an excuse.
@@ -221,15 +242,15 @@ TEST(RigRefinementTest, RightPlacementStays) {
   ASSERT_TRUE(refined.has_value()) << refined.error().message();
   EXPECT_LT(refined->shift.rms_px, std::max(0.05, 3.0 * refined->shift.sigma_px));
   EXPECT_LT(refined->shift.sigma_px, 0.2);
-  EXPECT_NEAR(refined->held_out_after_k, refined->held_out_before_k,
-              0.05 * refined->held_out_before_k);
+  EXPECT_NEAR(refined->held_out.after_k, refined->held_out.before_k,
+              0.05 * refined->held_out.before_k);
 }
 
 TEST(RigRefinementTest, OffsetAfterANucIsNoTexture) {
   const Result<Refinement> refined = RefineWall({.nuc_offset_k = 3.0}, SomewhatOff(4));
   ASSERT_TRUE(refined.has_value()) << refined.error().message();
   EXPECT_LT(Errors(*refined).cwiseAbs().maxCoeff(), 4.0);
-  EXPECT_LT(refined->held_out_after_k, 0.3);
+  EXPECT_LT(refined->held_out.after_k, 0.3);
 }
 
 TEST(RigRefinementTest, WanderingPosesAreInTheUncertainty) {
@@ -259,6 +280,34 @@ TEST(RigRefinementTest, RestingRigChangesNothing) {
   EXPECT_FALSE(refined->Tells(kRotationX));
 }
 
+TEST(RigRefinementTest, WhatIsToBeKeptIsKept) {
+  PlacementVector off_by = SomewhatOff(3);
+  off_by.tail<2>().setZero();
+  const Result<Refinement> refined = RefineWall({}, off_by, {.principal_point_px = 0.0});
+  ASSERT_TRUE(refined.has_value()) << refined.error().message();
+  EXPECT_EQ(refined->correction[kPrincipalX], 0.0);
+  EXPECT_TRUE(refined->Keeps(kPrincipalY));
+  EXPECT_FALSE(refined->Keeps(kDelay));
+  const PlacementVector left = CorrectionBetween(TruePlacement(), refined->after);
+  EXPECT_LT(left.head<3>().norm(), 0.05 * kDegree);
+  EXPECT_LT(left.segment<3>(3).norm(), 0.001);
+  const Result<Refinement> delay_only =
+      RefineWall({}, PlacementVector::Unit(kDelay) * 0.01,
+                 {.rotation_rad = 0.0, .translation_m = 0.0, .principal_point_px = 0.0});
+  ASSERT_TRUE(delay_only.has_value()) << delay_only.error().message();
+  EXPECT_NEAR(delay_only->correction[kDelay], -0.01, 0.0003);
+  EXPECT_TRUE(delay_only->correction.head<6>().isZero(1e-12));
+}
+
+/// Hot, and seen at changing angles: what the emission angle does must not pass for a texture.
+TEST(RigRefinementTest, EmissionAngleIsNoTexture) {
+  const Result<Refinement> refined =
+      RefineWall({.fold = 0.8, .refractive_index = 1.4}, PlacementVector::Zero());
+  ASSERT_TRUE(refined.has_value()) << refined.error().message();
+  std::printf("shift %.3f px\n", refined->shift.rms_px);
+  EXPECT_LT(refined->shift.rms_px, 0.2);
+}
+
 /// A texture that is shifted on a flat wall agrees with itself as well as in its place, as long as
 /// the rig never turns.
 TEST(RigRefinementTest, SweepAlongAFlatWallKeepsWhatItCannotTell) {
@@ -268,6 +317,16 @@ TEST(RigRefinementTest, SweepAlongAFlatWallKeepsWhatItCannotTell) {
   EXPECT_LT(refined->observed_directions, kPlacementParameters);
   EXPECT_FALSE(refined->Tells(kTranslationX));
   EXPECT_FALSE(refined->Tells(kTranslationY));
+  // Along what is not told, nothing has moved.
+  const PlacementVector in_priors = refined->correction.cwiseQuotient(refined->prior_sigma);
+  const PlacementMatrix covariance = refined->prior_sigma.cwiseInverse().asDiagonal() *
+                                     refined->covariance *
+                                     refined->prior_sigma.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<PlacementMatrix> axes(covariance);
+  for (int i = 0; i < kPlacementParameters; ++i) {
+    if (axes.eigenvalues()[i] < 0.9) continue;
+    EXPECT_NEAR(axes.eigenvectors().col(i).dot(in_priors), 0.0, 0.02) << "direction " << i;
+  }
   // The delay is told by the swing.
   EXPECT_TRUE(refined->Tells(kDelay));
   EXPECT_NEAR(refined->correction[kDelay], -off_by[kDelay], 0.001);

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <optional>
 
 #include "common/frame/gaussian_blur.h"
@@ -23,7 +23,7 @@ constexpr double kMisalignment_px = 0.5;
 // A mean of fewer frames is mostly one frame's noise.
 constexpr double kMinFrames = 8.0, kMinFramesOfEpoch = 4.0;
 // The squared gradient over its squared standard error: noise alone is above it at one of 22,000
-// points (exp(-10), for two directions).
+// points (exp(-10), for two directions and many frames; at one of 500 for the fewest).
 constexpr double kMinSignificance = 10.0;
 // To each side, for the velocity of a point at a frame's time: from one depth frame to the next.
 constexpr double kHalfBaseline_s = 0.015;
@@ -32,6 +32,8 @@ constexpr double kHalfBaseline_s = 0.015;
 // each point, unless angles hardly differ.
 constexpr double kRefractiveIndex = 1.5;
 constexpr double kMinReflectivitySpread = 0.0001;
+// A blur wider than this hides everything.
+constexpr double kMaxBlur_px = 20.0;
 constexpr double kMinDepth_m = 0.05;
 constexpr std::size_t kPointsPerTask = 128;
 
@@ -82,23 +84,15 @@ struct TextureAlignment::Sums {
     to.information += from.information;
     for (std::size_t i = 0; i < to.part_gradients.size(); ++i)
       to.part_gradients[i] += from.part_gradients[i];
-    to.loss += from.loss;
-    to.samples += from.samples;
     to.seen_points += from.seen_points;
     to.textured_points += from.textured_points;
-    held_out_squares += other.held_out_squares;
-    held_out_weights += other.held_out_weights;
-    held_out_logarithms += other.held_out_logarithms;
-    held_out_samples += other.held_out_samples;
   }
 
   AlignmentEquations equations;
-  double held_out_squares = 0.0, held_out_weights = 0.0;
-  double held_out_logarithms = 0.0, held_out_samples = 0.0;
-  Eigen::MatrixXd slopes;  ///< Scratch.
 };
 
-/// How the temperature changes along the surface at a point, by the frames that are not held out.
+/// Says how the temperature changes along the surface at a point, by the frames that are not held
+/// out.
 struct TextureAlignment::PointTexture {
   Eigen::Vector2d gradient_k_m = Eigen::Vector2d::Zero();
   double mean_slope_k_px = 0.0;  ///< The mean of single images' own gradients.
@@ -118,6 +112,13 @@ struct TextureAlignment::Epoch {
   double Difference(const Sample& sample) const {
     return sample.kelvin - kelvin - kelvin_by_reflectivity * (sample.reflectivity - reflectivity);
   }
+};
+
+/// Says how held-out frames differ from the others about one point.
+struct TextureAlignment::HeldOutPoint {
+  double count = 0.0;
+  double squares_k2 = 0.0;   ///< Mean of the squared differences.
+  double variance_k2 = 0.0;  ///< The others' own.
 };
 
 std::optional<TextureAlignment::PointTexture> TextureAlignment::TextureOf(
@@ -179,6 +180,16 @@ std::vector<TextureAlignment::Epoch> TextureAlignment::EpochsOf(
   return epochs;
 }
 
+std::optional<double> TextureAlignment::Variance(const std::vector<Epoch>& epochs) {
+  double count = 0.0, squares = 0.0;
+  for (const Epoch& epoch : epochs) {
+    count += epoch.count;
+    squares += epoch.squares;
+  }
+  if (count == 0.0) return std::nullopt;
+  return kNoise_k * kNoise_k + squares / count;
+}
+
 TextureAlignment::TextureAlignment(const ScanViews& views, bool hold_out, ThreadPool& pool)
     : views_(views), pool_(pool), showing_(views.points.size()) {
   const double length_s = PartLength(views, kPart_s);
@@ -207,8 +218,9 @@ void TextureAlignment::BlurImages(double sigma_px) {
   pool_.ParallelFor(static_cast<int>(views_.frames.size()), [&](int index) {
     const auto i = static_cast<std::size_t>(index);
     if (!(distances_m[i] > 0.0)) return;
-    blurred_[i] = BlurKnownPixels(*views_.frames[i].temperature_raw,
-                          GaussianWeights(sigma_px * usual_m / distances_m[i]));
+    blurred_[i] = BlurKnownPixels(
+        *views_.frames[i].temperature_raw,
+        GaussianWeights(std::min(kMaxBlur_px, sigma_px * usual_m / distances_m[i])));
   });
 }
 
@@ -298,8 +310,9 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
 }
 
 void TextureAlignment::AddEpoch(const std::vector<Sample>& samples, const Epoch& epoch,
-                                const PointTexture& texture, double weight, Sums& sums) {
-  Eigen::MatrixXd& slopes = sums.slopes;  // By parameter and sample.
+                                const PointTexture& texture, double weight, Eigen::MatrixXd& slopes,
+                                Sums& sums) {
+  // By parameter and sample.
   const Eigen::Index parameters = sums.equations.gradient.size();
   slopes.setZero(parameters, static_cast<Eigen::Index>(epoch.count));
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(parameters), by_reflectivity = mean;
@@ -325,40 +338,76 @@ void TextureAlignment::AddEpoch(const std::vector<Sample>& samples, const Epoch&
   column = 0;
   for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
     const Sample& sample = samples[i];
-    const double difference_k = epoch.Difference(sample);
-    if (sample.held_out) {
-      sums.held_out_squares += weight * difference_k * difference_k;
-      sums.held_out_weights += weight;
-      sums.held_out_logarithms -= std::log(weight);
-      sums.held_out_samples += 1.0;
-      continue;
-    }
+    if (sample.held_out) continue;
     auto slope = slopes.col(column++);
     slope -= mean + (sample.reflectivity - epoch.reflectivity) * by_reflectivity;
     sums.equations.part_gradients[static_cast<std::size_t>(sample.part)] +=
-        weight * difference_k * slope;
+        weight * epoch.Difference(sample) * slope;
   }
   sums.equations.information.selfadjointView<Eigen::Lower>().rankUpdate(slopes, weight);
 }
 
-void TextureAlignment::AddPoint(const std::vector<Sample>& samples, Sums& sums) {
+void TextureAlignment::AddPoint(const std::vector<Sample>& samples, Eigen::MatrixXd& slopes,
+                                Sums& sums) {
   const std::optional<PointTexture> texture = TextureOf(samples);
   if (!texture) return;
   ++sums.equations.seen_points;
   if (!texture->is_significant) return;
   ++sums.equations.textured_points;
   const std::vector<Epoch> epochs = EpochsOf(samples);
-  double count = 0.0, squares = 0.0;
-  for (const Epoch& epoch : epochs) {
-    count += epoch.count;
-    squares += epoch.squares;
-  }
-  if (count == 0.0) return;
+  const std::optional<double> variance_k2 = Variance(epochs);
+  if (!variance_k2) return;
   const double edge_k = kMisalignment_px * texture->mean_slope_k_px;
-  const double variance_k2 = kNoise_k * kNoise_k + edge_k * edge_k + squares / count;
-  sums.equations.samples += count;
-  sums.equations.loss += 0.5 * count * std::log(variance_k2);
-  for (const Epoch& epoch : epochs) AddEpoch(samples, epoch, *texture, 1.0 / variance_k2, sums);
+  for (const Epoch& epoch : epochs) {
+    AddEpoch(samples, epoch, *texture, 1.0 / (*variance_k2 + edge_k * edge_k), slopes, sums);
+  }
+}
+
+TextureAlignment::HeldOutPoint TextureAlignment::HeldOutAt(const std::vector<Sample>& samples) {
+  const std::vector<Epoch> epochs = EpochsOf(samples);
+  HeldOutPoint point;
+  point.variance_k2 = Variance(epochs).value_or(0.0);
+  for (const Epoch& epoch : epochs) {
+    for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
+      if (!samples[i].held_out) continue;
+      point.squares_k2 += std::pow(epoch.Difference(samples[i]), 2);
+      point.count += 1.0;
+    }
+  }
+  if (point.count > 0.0) point.squares_k2 /= point.count;
+  return point;
+}
+
+HeldOutComparison TextureAlignment::CompareHeldOut(const ThermalPlacement& before,
+                                                   const ThermalPlacement& after,
+                                                   std::size_t points) const {
+  points = std::min(points, views_.points.size());
+  const auto at = [&](const ThermalPlacement& placement) {
+    const TrajectoryDrift none;
+    const std::vector<FrameGeometry> geometries = Geometries(placement, none);
+    std::vector<HeldOutPoint> result(points);
+    pool_.ParallelFor(static_cast<int>(points), [&](int index) {
+      const auto i = static_cast<std::size_t>(index);
+      std::vector<Sample> samples;
+      Gather(views_.points[i], showing_[i], placement, none, geometries, samples);
+      result[i] = HeldOutAt(samples);
+    });
+    return result;
+  };
+  const std::vector<HeldOutPoint> a = at(before), b = at(after);
+  double weights = 0.0, a_squares = 0.0, b_squares = 0.0, a_loss = 0.0, b_loss = 0.0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double count = std::min(a[i].count, b[i].count);
+    if (count == 0.0) continue;
+    const double weight = 2.0 * count / (a[i].variance_k2 + b[i].variance_k2);
+    weights += weight;
+    a_squares += weight * a[i].squares_k2;
+    b_squares += weight * b[i].squares_k2;
+    a_loss += count * (std::log(a[i].variance_k2) + a[i].squares_k2 / a[i].variance_k2);
+    b_loss += count * (std::log(b[i].variance_k2) + b[i].squares_k2 / b[i].variance_k2);
+  }
+  if (weights == 0.0) return {};
+  return {std::sqrt(a_squares / weights), std::sqrt(b_squares / weights), b_loss < a_loss};
 }
 
 AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement,
@@ -372,10 +421,11 @@ AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement
   pool_.ParallelFor(static_cast<int>(tasks), [&](int index) {
     const auto task = static_cast<std::size_t>(index);
     std::vector<Sample> samples;
+    Eigen::MatrixXd slopes;
     for (std::size_t i = task * kPointsPerTask; i < std::min(points, (task + 1) * kPointsPerTask);
          ++i) {
       Gather(views_.points[i], showing_[i], placement, drift, geometries, samples);
-      AddPoint(samples, sums[task]);
+      AddPoint(samples, slopes, sums[task]);
     }
   });
   Sums total(parts_, parameters);
@@ -383,10 +433,6 @@ AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement
   AlignmentEquations& equations = total.equations;
   equations.information = equations.information.selfadjointView<Eigen::Lower>();
   for (const Eigen::VectorXd& gradient : equations.part_gradients) equations.gradient += gradient;
-  if (equations.samples > 0.0) equations.loss /= equations.samples;
-  equations.held_out_k = std::sqrt(total.held_out_squares / total.held_out_weights);
-  equations.held_out_loss =
-      0.5 * (total.held_out_squares + total.held_out_logarithms) / total.held_out_samples;
   return std::move(equations);
 }
 

@@ -21,16 +21,14 @@ struct AlignmentEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
   std::vector<Eigen::VectorXd> part_gradients;  ///< By part of the scan; `gradient` is their sum.
-  double loss = 0.0;        ///< Mean over the samples of the logarithm of their deviation, kelvin.
-  double samples = 0.0;     ///< Pairs of a point and a frame that count.
-  int seen_points = 0;      ///< Points that enough frames show.
+  int seen_points = 0;                          ///< Points that enough frames show.
   int textured_points = 0;  ///< The temperature changes along the surface at so many of them.
-  /// Weighted root mean square of what held-out frames show against what all others say, kelvin;
-  /// NaN without held-out frames.
-  double held_out_k = 0.0;
-  /// Mean over the held-out samples of minus the logarithm of what a normal distribution about what
-  /// the others say gives for them: the lower, the better they were predicted.
-  double held_out_loss = 0.0;
+};
+
+/// Says how well held-out frames fit what the others say about the surface, at two placements.
+struct HeldOutComparison {
+  double before_k = 0.0, after_k = 0.0;  ///< Weighted root mean square of the differences, kelvin.
+  bool improves = false;  ///< The second predicts them better, as a normal distribution.
 };
 
 /// Compares the thermal images of a scan point by point of its surface, each with the mean of all
@@ -52,11 +50,17 @@ class TextureAlignment {
   AlignmentEquations Linearize(const ThermalPlacement& placement, const TrajectoryDrift& drift,
                                std::size_t points) const;
 
+  /// By those of the first `points` of the points that held-out and other frames show at both
+  /// placements, each weighed alike at both.
+  HeldOutComparison CompareHeldOut(const ThermalPlacement& before, const ThermalPlacement& after,
+                                   std::size_t points) const;
+
  private:
   struct FrameGeometry;
   struct Sample;
   struct PointTexture;
   struct Epoch;
+  struct HeldOutPoint;
   struct Sums;
 
   std::vector<double> Distances() const;
@@ -67,10 +71,14 @@ class TextureAlignment {
               const std::vector<FrameGeometry>& geometries, std::vector<Sample>& samples) const;
   static std::optional<PointTexture> TextureOf(const std::vector<Sample>& samples);
   static void Complete(const std::vector<Sample>& samples, Epoch& epoch);
+  /// How far one image differs from what others say, K^2; nullopt without epochs.
+  static std::optional<double> Variance(const std::vector<Epoch>& epochs);
   static std::vector<Epoch> EpochsOf(const std::vector<Sample>& samples);
   static void AddEpoch(const std::vector<Sample>& samples, const Epoch& epoch,
-                       const PointTexture& texture, double weight, Sums& sums);
-  static void AddPoint(const std::vector<Sample>& samples, Sums& sums);
+                       const PointTexture& texture, double weight, Eigen::MatrixXd& slopes,
+                       Sums& sums);
+  static HeldOutPoint HeldOutAt(const std::vector<Sample>& samples);
+  static void AddPoint(const std::vector<Sample>& samples, Eigen::MatrixXd& slopes, Sums& sums);
 
   const ScanViews& views_;
   ThreadPool& pool_;

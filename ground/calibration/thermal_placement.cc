@@ -6,14 +6,11 @@ namespace isotherm {
 
 ThermalPlacement Corrected(const ThermalPlacement& placement, const PlacementVector& correction) {
   ThermalPlacement corrected = placement;
-  const Eigen::Vector3d rotation_rad = correction.segment<3>(kRotationX);
-  const double angle_rad = rotation_rad.norm();
-  if (angle_rad > 0.0) {
-    corrected.T_thermal_depth.linear() =
-        Eigen::AngleAxisd(angle_rad, rotation_rad / angle_rad).toRotationMatrix() *
-        placement.T_thermal_depth.linear();
-  }
-  corrected.T_thermal_depth.translation() += correction.segment<3>(kTranslationX);
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << correction.segment<3>(kTranslationX), correction.segment<3>(kRotationX);
+  const RigidTransform change = TransformFromTwist(twist);
+  corrected.T_thermal_depth.linear() = change.linear() * placement.T_thermal_depth.linear();
+  corrected.T_thermal_depth.translation() += change.translation();
   corrected.delay_s += correction[kDelay];
   corrected.camera.cx += correction[kPrincipalX];
   corrected.camera.cy += correction[kPrincipalY];

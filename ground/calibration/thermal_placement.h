@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <cstdint>
 #include <string_view>
 
 #include "common/geometry/camera.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/calibration/trajectory_drift.h"
-
 namespace isotherm {
 namespace {
 
@@ -49,46 +47,6 @@ TEST(ThermalPlacementTest, DerivativesOfTheProjectionAreThoseOfDifferences) {
           (*Project(kLens, p + step) - *Project(kLens, p - step)) / (2.0 * kStep_m);
       EXPECT_TRUE(projection.by_point.col(axis).isApprox(slope, 1e-6)) << "axis " << axis;
     }
-  }
-}
-
-/// A scan of three seconds of one point.
-ScanViews ThreeSeconds() {
-  ScanViews views;
-  views.points.push_back({{0.1, 0.2, 0.7}, -Eigen::Vector3d::UnitZ()});
-  for (int i = 0; i <= 3; ++i)
-    views.frames.push_back({CaptureTime(std::chrono::seconds(i)), {}, {}, {}});
-  return views;
-}
-
-TEST(TrajectoryDriftTest, KnotsAreSpreadOverTheScanAndLinearBetween) {
-  TrajectoryDrift drift(ThreeSeconds(), 1.0, 24);
-  ASSERT_EQ(drift.size(), 4 * TrajectoryDrift::kPerKnot);
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(drift.size());
-  values[TrajectoryDrift::kPerKnot + 3] = 0.004;  // Along x at one second.
-  drift.Add(values);
-  const auto shift_at = [&](double time_s) {
-    return drift.MotionAt(drift.At(CaptureTime(FromSeconds(time_s)))).translation().x();
-  };
-  EXPECT_NEAR(shift_at(0.0), 0.0, 1e-12);
-  EXPECT_NEAR(shift_at(0.25), 0.001, 1e-9);
-  EXPECT_NEAR(shift_at(1.0), 0.004, 1e-9);
-  EXPECT_NEAR(shift_at(1.5), 0.002, 1e-9);
-  EXPECT_NEAR(shift_at(9.0), 0.0, 1e-12);  // Beyond the end, the last knot's.
-  EXPECT_EQ(TrajectoryDrift(ThreeSeconds(), 0.001, 3).size(), 3 * TrajectoryDrift::kPerKnot);
-}
-
-TEST(TrajectoryDriftTest, DerivativesAreThoseOfDifferences) {
-  const Eigen::Vector3d p_world(0.4, -0.1, 0.9);
-  constexpr double kStep = 1e-6;
-  for (int i = 0; i < TrajectoryDrift::kPerKnot; ++i) {
-    TrajectoryDrift drift(ThreeSeconds(), 1.0, 24);
-    const Eigen::Vector3d slope = drift.ByKnot(p_world).col(i);
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(drift.size());
-    values[i] = kStep;
-    drift.Add(values);
-    const Eigen::Vector3d moved = drift.MotionAt(drift.At(CaptureTime())) * p_world;
-    EXPECT_TRUE(slope.isApprox((moved - p_world) / kStep, 1e-5)) << "value " << i;
   }
 }
 

@@ -16,8 +16,8 @@ struct ThermalSample {
   Eigen::Vector2d gradient_k_px = Eigen::Vector2d::Zero();
 };
 
-/// Bilinear, with the derivative of just that; nullopt at the border and where a pixel around has no
-/// value.
+/// Bilinear, with the derivative of just that; nullopt at the border and where a pixel around has
+/// no value.
 std::optional<ThermalSample> SampleThermal(const Image<std::uint16_t>& image,
                                            const RadiometricScale& scale,
                                            const Eigen::Vector2d& pixel);

@@ -32,19 +32,15 @@ RigidTransform TrajectoryDrift::MotionAt(const Place& place) const {
   const Eigen::Matrix<double, kPerKnot, 1> values =
       (1.0 - place.fraction) * values_.segment<kPerKnot>(place.first) +
       place.fraction * values_.segment<kPerKnot>(place.first + kPerKnot);
-  RigidTransform motion = RigidTransform::Identity();
-  const Eigen::Vector3d rotation_rad = values.head<3>();
-  const double angle_rad = rotation_rad.norm();
-  if (angle_rad > 0.0)
-    motion.linear() = Eigen::AngleAxisd(angle_rad, rotation_rad / angle_rad).toRotationMatrix();
-  motion.translation() = middle_world_ - motion.linear() * middle_world_ + values.tail<3>();
+  RigidTransform motion = TransformFromTwist(values);
+  motion.translation() += middle_world_ - motion.linear() * middle_world_;
   return motion;
 }
 
 Eigen::Matrix<double, 3, TrajectoryDrift::kPerKnot> TrajectoryDrift::ByKnot(
     const Eigen::Vector3d& p_world) const {
   Eigen::Matrix<double, 3, kPerKnot> by_knot;
-  by_knot << DerivativeByRotation(p_world - middle_world_), Eigen::Matrix3d::Identity();
+  by_knot << Eigen::Matrix3d::Identity(), DerivativeByRotation(p_world - middle_world_);
   return by_knot;
 }
 

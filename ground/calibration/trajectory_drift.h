@@ -12,7 +12,7 @@ namespace isotherm {
 /// evenly over the scan (knots) and linear in between. Thread-compatible.
 class TrajectoryDrift {
  public:
-  /// A rotation vector (radians) about the surface's middle and a shift (metres), world
+  /// A twist: a shift (metres) and a rotation vector (radians) about the surface's middle, world
   /// coordinates.
   static constexpr int kPerKnot = 6;
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,6 +11,7 @@
 
 #include "common/base/output_file.h"
 #include "common/base/progress.h"
+#include "common/options/text_proto.h"
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
 #include "common/rig/rig_calibration_file.h"
@@ -38,7 +39,8 @@ says how far its values may be off (one standard deviation; 0 keeps a value). A 
 the rig is moved to and fro, nearer and farther, and turned about its view tells everything; a steady sweep
 past a wall little. Uncertainties hold what drifting poses can be taken for.
 
-Without --apply or --output nothing is written. The file as it was is kept beside it (FILE.bak).
+Without --apply or --output nothing is written. All values are written together, for they are uncertain together;
+comments of the file are lost, and as it was it is kept beside it (FILE.bak).
 
 Examples:
   isotherm calibrate refine scan.mcap --rig rig.textproto --render refined.png
@@ -48,11 +50,14 @@ Examples:
 constexpr const char* kCheckFooter =
     R"(Says, before a job, whether pose and delay of the thermal camera are still what the calibration says, from
 half a minute of scanning something with warm and cold parts: one line each. Exit status 0: both fit;
-1: something has moved; 2: this scan cannot tell.
+1: something has moved; 2: this scan cannot tell (standard error says why).
 
 Examples:
   isotherm calibrate check scan.mcap
   isotherm calibrate check scan.mcap --rig rig.textproto)";
+
+// Exit statuses of the check.
+constexpr int kMoved = 1, kCannotTell = 2;
 
 struct RefineArguments {
   std::string recording, rig, output, render, json;
@@ -85,11 +90,17 @@ class RefineRun {
                    1e-3 * arguments_.translation_mm, 1e-3 * arguments_.delay_ms,
                    arguments_.principal_point_px};
     input.with_rendering = !arguments_.render.empty();
-    ProgressBar bar("calibrating", 0, "");
-    Result<RecordingRefinement> refined =
-        RefineByRecording(input, options_, [&](double fraction) { bar.Update(fraction); });
-    if (!refined) return Fail(refined.error());
-    bar.Finish();
+    Result<RecordingRefinement> refined = [&] {
+      ProgressBar bar("calibrating", 0, "");
+      auto result =
+          RefineByRecording(input, options_, [&](double fraction) { bar.Update(fraction); });
+      if (result) bar.Finish();
+      return result;
+    }();
+    if (!refined) {
+      status_ = refined.error();
+      return Fail(status_);
+    }
     refined_ = std::move(*refined);
     verdict_ = Assess(refined_, options_.delay_check().expert().max_shift_s());
     return std::nullopt;
@@ -97,12 +108,15 @@ class RefineRun {
 
   const RecordingRefinement& refined() const { return refined_; }
   const RefinementVerdict& verdict() const { return verdict_; }
+  /// Why there is no result.
+  const Status& status() const { return status_; }
 
  private:
   const RefineArguments& arguments_;
   GroundOptions options_;
   RecordingRefinement refined_;
   RefinementVerdict verdict_;
+  Status status_;
 };
 
 /// Changes what was refined, and says how.
@@ -113,7 +127,6 @@ void SetRefined(const RefineArguments& arguments, const RecordingRefinement& ref
   rig.mutable_thermal()->set_cy(r.after.camera.cy);
   *rig.mutable_t_thermal_depth() = ToProto(r.after.T_thermal_depth);
   rig.set_thermal_delay_s(refined.DelayAfter());
-  rig.set_date(Today());
   CalibrationRecord record;
   record.set_date(Today());
   record.set_method(fmt::format("{}, calibrate refine", SoftwareName()));
@@ -126,18 +139,30 @@ void SetRefined(const RefineArguments& arguments, const RecordingRefinement& ref
     for (int column = 0; column < kPlacementParameters; ++column)
       record.add_covariance(r.covariance(row, column));
   }
+  rig.set_date(record.date());
+  rig.set_method(record.method());
+  // It was that of other values.
+  rig.clear_reprojection_error_px();
   *rig.mutable_pose_calibration() = record;
 }
 
 Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined) {
   const std::string& path = arguments.apply ? arguments.rig : arguments.output;
+  std::error_code error;
+  const bool was_there = std::filesystem::exists(path, error);
+  RigCalibration whole = ToProto(refined.rig);
+  // With what a Rig does not hold: how its values were found.
+  if (!arguments.rig.empty()) {
+    whole.Clear();
+    ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.rig, whole));
+  }
+  SetRefined(arguments, refined, whole);
   ISOTHERM_RETURN_IF_ERROR(EditRigFile(path, [&](RigCalibration& rig) {
-    // Another file than the one that was refined gets all of it.
-    if (!arguments.apply) rig = ToProto(refined.rig);
-    SetRefined(arguments, refined, rig);
+    rig = whole;
     return OkStatus();
   }));
-  fmt::print("{}: written\n", path);
+  fmt::print("{}: written{}\n", path,
+             was_there ? fmt::format("; as it was, with its comments: {}.bak", path) : "");
   return OkStatus();
 }
 
@@ -163,7 +188,8 @@ int RunRefine(const RefineArguments& arguments) {
   fmt::print("{}", RefinementText(run.refined()));
   if (Status status = WriteExtras(arguments, run); !status.ok()) return Fail(status);
   if (!run.verdict().Moved()) {
-    fmt::print("{}nothing to write\n", CheckText(run.refined(), run.verdict()));
+    fmt::print("{}nothing to write{}\n", CheckText(run.refined(), run.verdict()),
+               arguments.output.empty() ? "" : fmt::format(": {} is not made", arguments.output));
     return 0;
   }
   if (arguments.output.empty() && !arguments.apply) {
@@ -176,21 +202,17 @@ int RunRefine(const RefineArguments& arguments) {
 
 int RunCheck(const RefineArguments& arguments) {
   RefineRun run(arguments);
-  if (const std::optional<int> failed = run.Refine()) return *failed;
+  if (const std::optional<int> failed = run.Refine())
+    return run.status().code() == StatusCode::kFailedPrecondition ? kCannotTell : *failed;
   fmt::print("{}", CheckText(run.refined(), run.verdict()));
+  if (Status status = WriteExtras(arguments, run); !status.ok()) return Fail(status);
   if (run.verdict().Moved()) {
     fmt::print("see `isotherm calibrate refine {}`\n", arguments.recording);
-    return 1;
+    return kMoved;
   }
   const bool both_told = run.verdict().geometry == DelayVerdict::kAgrees &&
                          run.verdict().delay == DelayVerdict::kAgrees;
-  return both_told ? 0 : 2;
-}
-
-void AddCommonArguments(CLI::App& command, RefineArguments& arguments) {
-  command.add_option("recording", arguments.recording, "Recording (.mcap)")->required();
-  AddConfigurationArguments(command, arguments.configuration);
-  command.add_option("--threads", arguments.threads, "Threads; 0 = one per core");
+  return both_told ? 0 : kCannotTell;
 }
 
 void AddPriorArguments(CLI::App& command, RefineArguments& arguments) {
@@ -216,6 +238,16 @@ void AddPriorArguments(CLI::App& command, RefineArguments& arguments) {
       ->capture_default_str();
 }
 
+void AddCommonArguments(CLI::App& command, RefineArguments& arguments) {
+  command.add_option("recording", arguments.recording, "Recording (.mcap)")->required();
+  AddConfigurationArguments(command, arguments.configuration);
+  command.add_option("--threads", arguments.threads, "Threads; 0 = one per core");
+  command.add_option("--json", arguments.json, "Write all values and their covariance (.json)");
+  command.add_option("--render", arguments.render,
+                     "Draw the surface with the mean of all images before and after (.png)");
+  AddPriorArguments(command, arguments);
+}
+
 }  // namespace
 
 void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
@@ -230,10 +262,6 @@ void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
   command
       ->add_option("-o,--output", arguments->output, "Write the refined calibration here instead")
       ->excludes(apply_option);
-  command->add_option("--render", arguments->render,
-                      "Write the surface with the mean of all images before and after (.png)");
-  command->add_option("--json", arguments->json, "Write all values and their covariance (.json)");
-  AddPriorArguments(*command, *arguments);
   command->footer(kRefineFooter);
   command->callback([arguments, &body] { body = [arguments] { return RunRefine(*arguments); }; });
 }

@@ -36,7 +36,8 @@ constexpr const char* kFooter =
 
 Exit status:
    0  done
-   1  an experiment's requirement is not met
+   1  an experiment's requirement is not met, or `calibrate check` found that something has moved
+   2  `calibrate check`: the scan cannot tell
   64  wrong command line or argument
   65  data is damaged, inconsistent, lacks something or cannot be right (nothing tracked, no
       temperature, wrong units, two clocks): what could be written is, and a warning says why

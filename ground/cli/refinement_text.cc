@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -25,36 +24,39 @@ constexpr int kGap_px = 8;
 struct ShownValue {
   std::string name;
   std::string unit;
-  double before = 0.0, after = 0.0, sigma = 0.0;
-  bool is_told = false;
+  double before = 0.0, after = 0.0;
+  double change = 0.0, sigma = 0.0;  ///< Rotations are about the camera's axes.
+  std::string remark;
 };
 
 std::vector<ShownValue> ShownValues(const RecordingRefinement& refined) {
   const Refinement& r = refined.refinement;
-  const auto rotation_deg = [](const RigidTransform& pose) -> Eigen::Vector3d {
-    const Eigen::AngleAxisd rotation(pose.linear());
-    return kDegrees * rotation.angle() * rotation.axis();
-  };
-  const Eigen::Vector3d turn_before = rotation_deg(r.before.T_thermal_depth);
-  const Eigen::Vector3d turn_after = rotation_deg(r.after.T_thermal_depth);
   std::vector<ShownValue> values;
-  const auto add = [&](PlacementParameter parameter, const std::string& name,
-                       const std::string& unit, double scale, double before, double after) {
-    values.push_back({name, unit, before, after, scale * r.Sigma(parameter), r.Tells(parameter)});
+  const auto add = [&](int parameter, const std::string& name, const std::string& unit,
+                       double scale, double before, double after) {
+    const auto of = static_cast<PlacementParameter>(parameter);
+    values.push_back({name, unit, scale * before, scale * after, scale * r.correction[parameter],
+                      scale * r.Sigma(of),
+                      r.Keeps(of)    ? "kept"
+                      : !r.Tells(of) ? "this scan hardly tells"
+                                     : ""});
   };
-  const std::array<const char*, 3> axes = {"x", "y", "z"};
+  const auto rotation = [](const RigidTransform& pose) -> Eigen::Vector3d {
+    const Eigen::AngleAxisd turn(pose.linear());
+    return turn.angle() * turn.axis();
+  };
+  const Eigen::Vector3d turn_before = rotation(r.before.T_thermal_depth);
+  const Eigen::Vector3d turn_after = rotation(r.after.T_thermal_depth);
+  constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
-    add(static_cast<PlacementParameter>(kRotationX + i),
-        fmt::format("rotation {}", axes[static_cast<std::size_t>(i)]), "degrees", kDegrees,
-        turn_before[i], turn_after[i]);
+    add(kRotationX + i, fmt::format("rotation {}", kAxes[i]), "degrees", kDegrees, turn_before[i],
+        turn_after[i]);
   }
   for (int i = 0; i < 3; ++i) {
-    add(static_cast<PlacementParameter>(kTranslationX + i),
-        fmt::format("translation {}", axes[static_cast<std::size_t>(i)]), "mm", 1e3,
-        1e3 * r.before.T_thermal_depth.translation()[i],
-        1e3 * r.after.T_thermal_depth.translation()[i]);
+    add(kTranslationX + i, fmt::format("translation {}", kAxes[i]), "mm", 1e3,
+        r.before.T_thermal_depth.translation()[i], r.after.T_thermal_depth.translation()[i]);
   }
-  add(kDelay, "delay", "ms", 1e3, 1e3 * refined.DelayBefore(), 1e3 * refined.DelayAfter());
+  add(kDelay, "delay", "ms", 1e3, refined.DelayBefore(), refined.DelayAfter());
   add(kPrincipalX, "principal point x", "px", 1.0, r.before.camera.cx, r.after.camera.cx);
   add(kPrincipalY, "principal point y", "px", 1.0, r.before.camera.cy, r.after.camera.cy);
   return values;
@@ -66,13 +68,13 @@ RefinementVerdict Assess(const RecordingRefinement& refined, double max_shift_s)
   const Refinement& r = refined.refinement;
   RefinementVerdict verdict;
   if (r.shift.rms_px > std::max(kMaxShift_px, kSigmas * r.shift.sigma_px)) {
-    verdict.geometry = r.improves_held_out ? DelayVerdict::kMoved : DelayVerdict::kNotAssessed;
+    verdict.geometry = r.held_out.improves ? DelayVerdict::kMoved : DelayVerdict::kNotAssessed;
   } else if (r.shift.sigma_px <= kMaxSigmaToAgree_px) {
     verdict.geometry = DelayVerdict::kAgrees;
   }
   verdict.delay =
       Assess({.delay_s = r.correction[kDelay], .sigma_s = r.Sigma(kDelay)}, max_shift_s);
-  if (verdict.delay == DelayVerdict::kMoved && !r.improves_held_out)
+  if (verdict.delay == DelayVerdict::kMoved && !r.held_out.improves)
     verdict.delay = DelayVerdict::kNotAssessed;
   return verdict;
 }
@@ -83,27 +85,29 @@ std::string RefinementText(const RecordingRefinement& refined) {
                                  "change", "uncertain by");
   for (const ShownValue& value : ShownValues(refined)) {
     text += fmt::format("{:<18}{:>10.3f}{:>10.3f}{:>+10.3f}{:>14.3f} {}{}\n", value.name,
-                        value.before, value.after, value.after - value.before, value.sigma,
-                        value.unit, value.is_told ? "" : "   (this scan cannot tell)");
+                        value.before, value.after, value.change, value.sigma, value.unit,
+                        value.remark.empty() ? "" : fmt::format("   ({})", value.remark));
   }
   text += fmt::format(
       "points of the surface land {:.2f} px elsewhere in the thermal image (uncertain by {:.2f} "
-      "px)\n"
+      "px), the delay apart\n"
       "images that were held out differ from the others by {:.3f} K after, {:.3f} K before\n"
       "from {} thermal frames and {} of {} points, where temperatures change along the surface; {} "
       "of {} directions told\n",
-      r.shift.rms_px, r.shift.sigma_px, r.held_out_after_k, r.held_out_before_k, r.frames,
+      r.shift.rms_px, r.shift.sigma_px, r.held_out.after_k, r.held_out.before_k, r.frames,
       r.textured_points, r.points, r.observed_directions, kPlacementParameters);
   return text;
 }
 
 std::string CheckText(const RecordingRefinement& refined, const RefinementVerdict& verdict) {
   const Refinement& r = refined.refinement;
-  const auto line = [](const char* name, DelayVerdict part, const std::string& figures) {
+  const auto line = [&](const char* name, DelayVerdict part, const std::string& figures) {
     const char* word = part == DelayVerdict::kMoved    ? "moved by"
                        : part == DelayVerdict::kAgrees ? "ok, within"
                                                        : "cannot tell here:";
-    return fmt::format("{:<10}{} {}\n", name, word, figures);
+    const bool is_refuted = part == DelayVerdict::kNotAssessed && !r.held_out.improves;
+    return fmt::format("{:<10}{} {}{}\n", name, word, figures,
+                       is_refuted ? ", but images that were held out do not agree better" : "");
   };
   return line("pose", verdict.geometry,
               fmt::format("{:.2f} px in the thermal image, uncertain by {:.2f} px", r.shift.rms_px,
@@ -113,29 +117,29 @@ std::string CheckText(const RecordingRefinement& refined, const RefinementVerdic
                           1e3 * r.Sigma(kDelay)));
 }
 
-nlohmann::json RefinementJson(const RecordingRefinement& refined,
-                              const RefinementVerdict& verdict) {
+Json RefinementJson(const RecordingRefinement& refined, const RefinementVerdict& verdict) {
   const Refinement& r = refined.refinement;
-  nlohmann::json json;
-  for (const ShownValue& value : ShownValues(refined)) {
-    json["values"].push_back({{"name", value.name},
-                              {"unit", value.unit},
-                              {"before", value.before},
-                              {"after", value.after},
-                              {"sigma", value.sigma},
-                              {"told_by_this_scan", value.is_told}});
-  }
-  json["geometry"] = ToString(verdict.geometry);
+  Json json;
+  json["pose"] = ToString(verdict.geometry);
   json["delay"] = ToString(verdict.delay);
+  for (const ShownValue& value : ShownValues(refined)) {
+    json["values"].push_back(Json{{"name", value.name},
+                                  {"unit", value.unit},
+                                  {"before", value.before},
+                                  {"after", value.after},
+                                  {"change", value.change},
+                                  {"sigma", value.sigma},
+                                  {"remark", value.remark}});
+  }
   json["shift_px"] = r.shift.rms_px;
   json["shift_sigma_px"] = r.shift.sigma_px;
-  json["held_out_before_k"] = r.held_out_before_k;
-  json["held_out_after_k"] = r.held_out_after_k;
+  json["held_out_before_k"] = r.held_out.before_k;
+  json["held_out_after_k"] = r.held_out.after_k;
   json["thermal_frames"] = r.frames;
   json["points"] = r.points;
   json["points_with_texture"] = r.textured_points;
   json["directions_told"] = r.observed_directions;
-  json["covariance_of"] = kPlacementParameterNames;
+  json["corrections"] = kPlacementParameterNames;
   for (int row = 0; row < kPlacementParameters; ++row) {
     const PlacementVector values = r.covariance.row(row);
     json["covariance"].push_back(std::vector<double>(values.begin(), values.end()));

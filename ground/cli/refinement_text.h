@@ -1,10 +1,10 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "common/frame/image.h"
 #include "ground/calibration/delay_check.h"
+#include "ground/json/json.h"
 #include "ground/offline/recording_refinement.h"
 
 namespace isotherm {
@@ -25,11 +25,11 @@ RefinementVerdict Assess(const RecordingRefinement& refined, double max_shift_s)
 /// A table of all values before and after, and what the result rests on.
 std::string RefinementText(const RecordingRefinement& refined);
 
-/// Two lines: each part of the calibration is right, moved, or cannot be told.
+/// Two lines: each part of the calibration is right, moved, or cannot be told, and why.
 std::string CheckText(const RecordingRefinement& refined, const RefinementVerdict& verdict);
 
-/// The same and the whole covariance, in SI units and pixels.
-nlohmann::json RefinementJson(const RecordingRefinement& refined, const RefinementVerdict& verdict);
+/// The same, and the covariance of the corrections in radians, metres, seconds and pixels.
+Json RefinementJson(const RecordingRefinement& refined, const RefinementVerdict& verdict);
 
 /// The two renderings beside each other.
 Image<float> BeforeAndAfter(const RecordingRefinement& refined);

@@ -52,10 +52,12 @@ Status CheckContents(const RecordingInfo& info, const Rig& rig) {
 /// Depth frames through the pipeline, thermal frames kept.
 class Reader {
  public:
-  Reader(RecordingReader& reader, GroundPipeline& pipeline, const Rig& rig)
+  Reader(RecordingReader& reader, GroundPipeline& pipeline, const Rig& rig,
+         std::optional<double> depth_scale)
       : reader_(reader),
         pipeline_(pipeline),
         rig_(rig),
+        depth_scale_(depth_scale),
         stride_(1 + Count(reader.info(), "/thermal") / kMaxFrames) {}
 
   void Run(const std::function<void(double)>& progress) {
@@ -72,7 +74,7 @@ class Reader {
 
  private:
   void Take(const RecordedDepth& recorded) {
-    if (const auto frame = Unpack(recorded, std::nullopt)) pipeline_.ProcessDepth(**frame);
+    if (const auto frame = Unpack(recorded, depth_scale_)) pipeline_.ProcessDepth(**frame);
   }
 
   void Take(const RecordedThermal& recorded) {
@@ -99,6 +101,7 @@ class Reader {
   RecordingReader& reader_;
   GroundPipeline& pipeline_;
   const Rig& rig_;
+  const std::optional<double> depth_scale_;  ///< Instead of the frames' own.
   const std::uint64_t stride_;
   std::uint64_t seen_ = 0;
   NucEpochs nuc_epochs_;
@@ -122,11 +125,12 @@ TrackedRecording::TrackedRecording(TrackedRecording&&) noexcept = default;
 ScanModel TrackedRecording::model() const { return pipeline_->model(); }
 
 Result<TrackedRecording> TrackedRecording::Read(const std::filesystem::path& recording,
+                                                const std::optional<Rig>& given,
                                                 const GroundOptions& options,
                                                 const std::function<void(double)>& progress) {
   Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(recording);
   if (!reader) return Err(reader.error());
-  const Result<Rig> rig = (*reader)->ReadRig();
+  const Result<Rig> rig = given ? Result<Rig>(*given) : (*reader)->ReadRig();
   if (!rig) return Err(rig.error().WithContext(recording.string()));
   if (Status status = CheckContents((*reader)->info(), *rig); !status.ok())
     return Err(status.WithContext(recording.string()));
@@ -135,7 +139,8 @@ Result<TrackedRecording> TrackedRecording::Read(const std::filesystem::path& rec
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, depth_only, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-  Reader frames(**reader, **pipeline, *rig);
+  Reader frames(**reader, **pipeline, *rig,
+                given ? std::optional(given->depth_scale) : std::nullopt);
   frames.Run(progress);
   if (Status fit = CheckTracked((*pipeline)->model().counts); !fit.ok())
     return Err(fit.WithContext(recording.string()));
@@ -162,8 +167,8 @@ Result<double> DelayInStamps(std::optional<double> applied_delay_s,
 Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
                                     const GroundOptions& options, double range_s,
                                     const std::function<void(double)>& progress) {
-  Result<TrackedRecording> tracked =
-      TrackedRecording::Read(recording, options, PartOf(progress, 0.0, kReadFraction));
+  Result<TrackedRecording> tracked = TrackedRecording::Read(recording, std::nullopt, options,
+                                                            PartOf(progress, 0.0, kReadFraction));
   if (!tracked) return Err(tracked.error());
   ScanForCalibration scan{{}, tracked->rig(), tracked->applied_delay_s()};
   scan.views.thermal_camera = *scan.rig.thermal;

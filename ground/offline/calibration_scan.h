@@ -23,13 +23,14 @@ class TrackedRecording {
  public:
   /// Tracks the depth camera through a recording. Fails with what is missing: calibration, depth,
   /// thermal frames, poses. `progress` gets the fraction done, 0..1.
+  /// `rig` replaces the recording's own calibration.
   static Result<TrackedRecording> Read(const std::filesystem::path& recording,
-                                       const GroundOptions& options,
+                                       const std::optional<Rig>& rig, const GroundOptions& options,
                                        const std::function<void(double)>& progress);
   ~TrackedRecording();
   TrackedRecording(TrackedRecording&&) noexcept;
 
-  const Rig& rig() const { return rig_; }  ///< As recorded.
+  const Rig& rig() const { return rig_; }  ///< The one it was read with.
   /// See AppliedDelay.
   std::optional<double> applied_delay_s() const { return applied_delay_s_; }
   ScanModel model() const;

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 
+#include "common/recording/recording.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/calibration/texture_rendering.h"
@@ -14,19 +18,50 @@
 namespace isotherm {
 namespace {
 
-// Of the progress.
-constexpr double kTracked = 0.4, kRefined = 0.9;
-// As many as the finest comparison takes, with some that hardly any frame shows.
+// What tracking and refining take of the progress.
+constexpr double kTracked = 0.3, kRefined = 0.95;
+// As many as the finest comparison takes (RefinePlacement).
 constexpr std::size_t kSampledPoints = 30'000;
 
+Status CheckSerial(std::string_view name, const std::string& in_file, const std::string& recorded) {
+  if (in_file.empty() || recorded.empty() || in_file == recorded) return OkStatus();
+  return FailedPrecondition(fmt::format(
+      "it was recorded with the {} camera with serial number {}, the calibration is of the one "
+      "with {}: name that rig's own",
+      name, recorded, in_file));
+}
+
+/// Checks what can be told before the frames are read.
 Status CheckFits(const Rig& rig, const Rig& recorded) {
   if (Status status = CheckThermalFusion(rig); !status.ok()) return status;
-  if (rig.thermal->width == recorded.thermal->width &&
-      rig.thermal->height == recorded.thermal->height)
+  ISOTHERM_RETURN_IF_ERROR(CheckSerial("depth", rig.depth_serial, recorded.depth_serial));
+  ISOTHERM_RETURN_IF_ERROR(CheckSerial("thermal", rig.thermal_serial, recorded.thermal_serial));
+  if (!recorded.thermal || (rig.thermal->width == recorded.thermal->width &&
+                            rig.thermal->height == recorded.thermal->height))
     return OkStatus();
   return InvalidArgument(fmt::format(
-      "the calibration's thermal camera has {} x {} pixels, the recording's {} x {}",
+      "the calibration's thermal camera has {} x {} pixels, the recording's {} x {}: name the "
+      "calibration that it was recorded with",
       rig.thermal->width, rig.thermal->height, recorded.thermal->width, recorded.thermal->height));
+}
+
+/// Holds what is known before the frames are read.
+struct Beginning {
+  Rig rig;
+  double delay_in_stamps_s = 0.0;
+};
+
+Result<Beginning> Begin(const RefinementInput& input) {
+  const Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(input.recording);
+  if (!reader) return Err(reader.error());
+  const Result<Rig> recorded = (*reader)->ReadRig();
+  if (!recorded && !input.rig) return Err(recorded.error());
+  const Rig rig = input.rig ? *input.rig : *recorded;
+  if (Status status = CheckFits(rig, recorded ? *recorded : Rig()); !status.ok())
+    return Err(status);
+  const Result<double> delay_s = DelayInStamps(AppliedDelay((*reader)->info()), input.rig);
+  if (!delay_s) return Err(delay_s.error());
+  return Beginning{rig, *delay_s};
 }
 
 }  // namespace
@@ -34,28 +69,27 @@ Status CheckFits(const Rig& rig, const Rig& recorded) {
 Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
                                               const GroundOptions& options,
                                               const std::function<void(double)>& progress) {
+  const Result<Beginning> beginning = Begin(input);
+  if (!beginning) return Err(beginning.error().WithContext(input.recording.string()));
   const Result<TrackedRecording> tracked =
-      TrackedRecording::Read(input.recording, options, PartOf(progress, 0.0, kTracked));
+      TrackedRecording::Read(input.recording, input.rig, options, PartOf(progress, 0.0, kTracked));
   if (!tracked) return Err(tracked.error());
   RecordingRefinement result;
-  result.rig = input.rig.value_or(tracked->rig());
-  if (Status status = CheckFits(result.rig, tracked->rig()); !status.ok())
-    return Err(status.WithContext(input.recording.string()));
-  const Result<double> delay_s = DelayInStamps(tracked->applied_delay_s(), input.rig);
-  if (!delay_s) return Err(delay_s.error().WithContext(input.recording.string()));
-  result.delay_in_stamps_s = *delay_s;
+  result.rig = beginning->rig;
+  result.delay_in_stamps_s = beginning->delay_in_stamps_s;
   // A recording's own calibration says what is still to be added to its stamps.
-  const ThermalPlacement before{
-      *result.rig.thermal, *result.rig.T_thermal_depth,
-      input.rig ? result.rig.thermal_delay_s - *delay_s : result.rig.thermal_delay_s};
+  const ThermalPlacement before{*result.rig.thermal, *result.rig.T_thermal_depth,
+                                input.rig ? result.rig.thermal_delay_s - result.delay_in_stamps_s
+                                          : result.rig.thermal_delay_s};
   const ScanModel model = tracked->model();
   ScanViews views;
-  const LookAgain look_again = [&](const ThermalPlacement& placement, double range_s) {
+  const LookAgain look_again = [&](const ThermalPlacement& placement, double range_s,
+                                   const std::function<void(double)>& seen) {
     views.thermal_camera = placement.camera;
     views.T_thermal_depth = placement.T_thermal_depth;
     views.delay_s = placement.delay_s;
     views.frames = tracked->frames();
-    return AddSurface(model, kSampledPoints, range_s, views, {});
+    return AddSurface(model, kSampledPoints, range_s, views, seen);
   };
   Result<Refinement> refined = RefinePlacement(views, before, input.prior, look_again, model.pool,
                                                PartOf(progress, kTracked, kRefined));

@@ -6,13 +6,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <variant>
 
+#include "common/options/text_proto.h"
 #include "common/recording/recording.h"
 #include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "tests/support/tool.h"
 
 namespace isotherm::testing {
@@ -54,11 +57,20 @@ class RefineToolTest : public ToolRun {
 
   /// A copy without the depth frames of 0.4 s of each second but the first.
   void CopyWithGaps(const std::string& from, const std::string& to) const {
+    Copy(from, to, "", [](double at_s) { return at_s > 1.0 && at_s - std::floor(at_s) > 0.6; });
+  }
+
+  /// A copy of a camera with a serial number, without the depth frames that `is_missing` by
+  /// seconds.
+  void Copy(const std::string& from, const std::string& to, const std::string& thermal_serial,
+            const std::function<bool(double)>& is_missing) const {
     auto reader = RecordingReader::Open(folder_ / from);
     ASSERT_TRUE(reader) << reader.error().message();
     auto writer = RecordingWriter::Create(folder_ / to, {});
     ASSERT_TRUE(writer) << writer.error().message();
-    ASSERT_TRUE((*writer)->Write((*reader)->ReadRig().value()).ok());
+    Rig rig = (*reader)->ReadRig().value();
+    rig.thermal_serial = thermal_serial;
+    ASSERT_TRUE((*writer)->Write(rig).ok());
     std::optional<CaptureTime> start;
     while (true) {
       auto item = (*reader)->Next();
@@ -67,8 +79,7 @@ class RefineToolTest : public ToolRun {
       if (const auto* depth = std::get_if<RecordedDepth>(&**item)) {
         const CaptureTime time = depth->frame.header.capture_time;
         if (!start) start = time;
-        const double at_s = ToSeconds(time - *start);
-        if (at_s > 1.0 && at_s - std::floor(at_s) > 0.6) continue;
+        if (is_missing && is_missing(ToSeconds(time - *start))) continue;
         ASSERT_TRUE((*writer)->Write(depth->frame, depth->arrival).ok());
       }
       if (const auto* thermal = std::get_if<RecordedThermal>(&**item)) {
@@ -111,10 +122,20 @@ TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
   EXPECT_THAT(ReadAll(folder_ / "new.textproto"), HasSubstr("rx ry rz tx ty tz delay cx cy"));
   EXPECT_EQ(ReadAll(folder_ / "both.png").substr(1, 3), "PNG");
   const nlohmann::json all = nlohmann::json::parse(ReadAll(folder_ / "all.json"));
-  EXPECT_EQ(all["geometry"], "moved");
+  EXPECT_EQ(all["pose"], "moved");
   EXPECT_EQ(all["values"].size(), 9U);
   EXPECT_EQ(all["covariance"].size(), 9U);
-  EXPECT_LT(all["held_out_after_k"], all["held_out_before_k"]);
+  EXPECT_LT(all["held_out_after_k"].get<double>(), all["held_out_before_k"].get<double>());
+
+  // How the lenses were found is kept.
+  RigCalibration proto = ToProto(right);
+  proto.mutable_thermal_calibration()->set_target("thesis-board");
+  proto.mutable_thermal()->set_cx(right.thermal->cx + 3.0);
+  Write("lens.textproto", "# Mine.\n" + ToTextProto(proto));
+  const Outcome applied = Run("calibrate refine scan.mcap --rig lens.textproto --apply");
+  EXPECT_EQ(applied.status, 0) << applied.err;
+  EXPECT_THAT(ReadAll(folder_ / "lens.textproto"), HasSubstr("thesis-board"));
+  EXPECT_THAT(ReadAll(folder_ / "lens.textproto.bak"), ::testing::StartsWith("# Mine."));
 
   // What agrees is not written again.
   const Outcome again = Run("calibrate refine scan.mcap --rig new.textproto --apply");
@@ -142,6 +163,7 @@ TEST_F(RefineToolTest, CheckFindsLittleAndIsNotAlarmedByGaps) {
 
 TEST_F(RefineToolTest, WhatCannotBeToldIsSaid) {
   RunWell("simulate -o still.mcap --duration 4 --scene plane");
+  EXPECT_EQ(Run("calibrate check still.mcap").status, 2);
   const Outcome still = Run("calibrate refine still.mcap -o never.textproto");
   EXPECT_EQ(still.status, kData);
   EXPECT_THAT(still.err,
@@ -153,6 +175,13 @@ TEST_F(RefineToolTest, WhatCannotBeToldIsSaid) {
   const Outcome size = Run("calibrate check still.mcap --rig other.textproto");
   EXPECT_NE(size.status, 0);
   EXPECT_THAT(size.err, AllOf(HasSubstr("160 x 288"), HasSubstr("382 x 288")));
+  Rig another = Recorded("still.mcap");
+  another.thermal_serial = "T 2";
+  WriteRig("another.textproto", another);
+  Copy("still.mcap", "named.mcap", "T 1", {});
+  const Outcome serial = Run("calibrate refine named.mcap --rig another.textproto --apply");
+  EXPECT_EQ(serial.status, kData);
+  EXPECT_THAT(serial.err, AllOf(HasSubstr("T 1"), HasSubstr("T 2")));
   EXPECT_EQ(Run("calibrate refine still.mcap --apply").status, kUsage);
   EXPECT_EQ(Run("calibrate refine still.mcap --prior-rotation -1").status, kUsage);
   EXPECT_EQ(Run("calibrate refine nowhere.mcap").status, kNoInput);
