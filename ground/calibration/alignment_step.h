@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ground/calibration/texture_alignment.h"
+#include "ground/calibration/alignment_equations.h"
 #include "ground/calibration/thermal_placement.h"
 
 namespace isotherm {

@@ -17,21 +17,12 @@ namespace {
 // than the knots of the drift.
 constexpr double kPart_s = 0.25;
 constexpr int kHeldOutEvery = 3;
-// As in TextureConsistency: what a sample differs by without any fault of the calibration.
-constexpr double kNoise_k = 0.1;
-constexpr double kMisalignment_px = 0.5;
-// A mean of fewer frames is mostly one frame's noise.
-constexpr double kMinFrames = 8.0, kMinFramesOfEpoch = 4.0;
-// The squared gradient over its squared standard error: noise alone is above it at one of 22,000
-// points (exp(-10), for two directions and many frames; at one of 500 for the fewest).
-constexpr double kMinSignificance = 10.0;
 // To each side, for the velocity of a point at a frame's time: from one depth frame to the next.
 constexpr double kHalfBaseline_s = 0.015;
 // How temperatures change with the emission angle has this shape, whatever the material and its
 // temperature: next to nothing up to 40 degrees, then ever faster (Fresnel). Its size is fitted at
 // each point, unless angles hardly differ.
 constexpr double kRefractiveIndex = 1.5;
-constexpr double kMinReflectivitySpread = 0.0001;
 // A blur wider than this hides everything.
 constexpr double kMaxBlur_px = 20.0;
 constexpr double kMinDepth_m = 0.05;
@@ -45,9 +36,37 @@ Eigen::Matrix<double, 3, 2> TangentsOf(const Eigen::Vector3d& n) {
   return tangents;
 }
 
+AlignmentEquations NoEquations(int parts, int parameters) {
+  AlignmentEquations equations;
+  equations.information = Eigen::MatrixXd::Zero(parameters, parameters);
+  equations.gradient = Eigen::VectorXd::Zero(parameters);
+  equations.part_gradients.assign(static_cast<std::size_t>(parts), equations.gradient);
+  return equations;
+}
+
+void Add(const AlignmentEquations& from, AlignmentEquations& to) {
+  to.information += from.information;
+  for (std::size_t i = 0; i < to.part_gradients.size(); ++i)
+    to.part_gradients[i] += from.part_gradients[i];
+  to.seen_points += from.seen_points;
+  to.textured_points += from.textured_points;
+}
+
+void AddPoint(const std::vector<PointSample>& samples, AlignmentEquations& equations) {
+  const std::optional<PointTexture> texture = TextureOf(samples);
+  if (!texture) return;
+  ++equations.seen_points;
+  if (!texture->is_significant) return;
+  ++equations.textured_points;
+  const std::vector<PointEpoch> epochs = EpochsOf(samples);
+  const std::optional<double> weight = WeightOf(*texture, epochs);
+  if (!weight) return;
+  for (const PointEpoch& epoch : epochs) AddEpoch(samples, epoch, *texture, *weight, equations);
+}
+
 }  // namespace
 
-/// How one frame sees, at a placement.
+/// Says how one frame sees, at a placement.
 struct TextureAlignment::FrameGeometry {
   bool is_known = false;
   RigidTransform T_thermal_world = RigidTransform::Identity();
@@ -57,138 +76,12 @@ struct TextureAlignment::FrameGeometry {
   TrajectoryDrift::Place drift;
 };
 
-/// Holds what one frame shows of one point.
-struct TextureAlignment::Sample {
-  double kelvin = 0.0;
-  Eigen::Vector2d gradient_k_m;  ///< Along the surface.
-  /// Where on the surface the pixel of the point lies after a correction, metres per unit.
-  Eigen::Matrix<double, 2, kPlacementParameters> shift;
-  Eigen::Matrix<double, 2, TrajectoryDrift::kPerKnot> drift_shift;  ///< The same by a knot.
-  TrajectoryDrift::Place drift;
-  double pixels_per_metre = 0.0;
-  double reflectivity = 0.0;  ///< A dielectric surface's, seen at this emission angle.
-  int part = 0;
-  std::uint8_t epoch = 0;
-  bool held_out = false;
-};
-
-struct TextureAlignment::Sums {
-  Sums(int parts, int parameters) {
-    equations.information = Eigen::MatrixXd::Zero(parameters, parameters);
-    equations.gradient = Eigen::VectorXd::Zero(parameters);
-    equations.part_gradients.assign(static_cast<std::size_t>(parts), equations.gradient);
-  }
-  void Add(const Sums& other) {
-    AlignmentEquations& to = equations;
-    const AlignmentEquations& from = other.equations;
-    to.information += from.information;
-    for (std::size_t i = 0; i < to.part_gradients.size(); ++i)
-      to.part_gradients[i] += from.part_gradients[i];
-    to.seen_points += from.seen_points;
-    to.textured_points += from.textured_points;
-  }
-
-  AlignmentEquations equations;
-};
-
-/// Says how the temperature changes along the surface at a point, by the frames that are not held
-/// out.
-struct TextureAlignment::PointTexture {
-  Eigen::Vector2d gradient_k_m = Eigen::Vector2d::Zero();
-  double mean_slope_k_px = 0.0;  ///< The mean of single images' own gradients.
-  bool is_significant = false;   ///< The gradient is above what noise makes.
-};
-
-/// The samples [begin, end) of a point between two NUCs, and what they are compared with: a
-/// temperature and its change with the emission angle, fitted to those that are not held out.
-struct TextureAlignment::Epoch {
-  std::size_t begin = 0, end = 0;
-  double count = 0.0;  ///< Samples that are not held out; the rest is about them.
-  double kelvin = 0.0, reflectivity = 0.0;  ///< Means.
-  double kelvin_by_reflectivity = 0.0;
-  double reflectivity_squares = 0.0;  ///< Sum over the samples, about the mean.
-  double squares = 0.0;               ///< Sum over the differences, K^2.
-
-  double Difference(const Sample& sample) const {
-    return sample.kelvin - kelvin - kelvin_by_reflectivity * (sample.reflectivity - reflectivity);
-  }
-};
-
 /// Says how held-out frames differ from the others about one point.
 struct TextureAlignment::HeldOutPoint {
   double count = 0.0;
   double squares_k2 = 0.0;   ///< Mean of the squared differences.
   double variance_k2 = 0.0;  ///< The others' own.
 };
-
-std::optional<TextureAlignment::PointTexture> TextureAlignment::TextureOf(
-    const std::vector<Sample>& samples) {
-  PointTexture texture;
-  double count = 0.0, squares = 0.0;
-  for (const Sample& sample : samples) {
-    if (sample.held_out) continue;
-    count += 1.0;
-    texture.gradient_k_m += sample.gradient_k_m;
-    texture.mean_slope_k_px += sample.gradient_k_m.norm() / sample.pixels_per_metre;
-    squares += sample.gradient_k_m.squaredNorm();
-  }
-  if (count < kMinFrames) return std::nullopt;
-  texture.gradient_k_m /= count;
-  texture.mean_slope_k_px /= count;
-  const double scatter = squares / count - texture.gradient_k_m.squaredNorm();
-  texture.is_significant = texture.gradient_k_m.squaredNorm() >
-                           kMinSignificance * std::max(0.0, scatter) / (count - 1.0);
-  return texture;
-}
-
-void TextureAlignment::Complete(const std::vector<Sample>& samples, Epoch& epoch) {
-  const auto for_each = [&](const auto& add) {
-    for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
-      if (!samples[i].held_out) add(samples[i]);
-    }
-  };
-  for_each([&](const Sample& sample) {
-    epoch.count += 1.0;
-    epoch.kelvin += sample.kelvin;
-    epoch.reflectivity += sample.reflectivity;
-  });
-  if (epoch.count == 0.0) return;
-  epoch.kelvin /= epoch.count;
-  epoch.reflectivity /= epoch.count;
-  epoch.reflectivity_squares = kMinReflectivitySpread * kMinReflectivitySpread * epoch.count;
-  for_each([&](const Sample& sample) {
-    const double reflectivity = sample.reflectivity - epoch.reflectivity;
-    epoch.reflectivity_squares += reflectivity * reflectivity;
-    epoch.kelvin_by_reflectivity += reflectivity * sample.kelvin;
-  });
-  epoch.kelvin_by_reflectivity /= epoch.reflectivity_squares;
-  for_each([&](const Sample& sample) {
-    const double difference_k = epoch.Difference(sample);
-    epoch.squares += difference_k * difference_k;
-  });
-}
-
-std::vector<TextureAlignment::Epoch> TextureAlignment::EpochsOf(
-    const std::vector<Sample>& samples) {
-  std::vector<Epoch> epochs;
-  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    while (end < samples.size() && samples[end].epoch == samples[begin].epoch) ++end;
-    Epoch epoch{begin, end};
-    Complete(samples, epoch);
-    if (epoch.count >= kMinFramesOfEpoch) epochs.push_back(epoch);
-  }
-  return epochs;
-}
-
-std::optional<double> TextureAlignment::Variance(const std::vector<Epoch>& epochs) {
-  double count = 0.0, squares = 0.0;
-  for (const Epoch& epoch : epochs) {
-    count += epoch.count;
-    squares += epoch.squares;
-  }
-  if (count == 0.0) return std::nullopt;
-  return kNoise_k * kNoise_k + squares / count;
-}
 
 TextureAlignment::TextureAlignment(const ScanViews& views, bool hold_out, ThreadPool& pool)
     : views_(views), pool_(pool), showing_(views.points.size()) {
@@ -265,7 +158,7 @@ std::vector<TextureAlignment::FrameGeometry> TextureAlignment::Geometries(
 void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::uint32_t>& frames,
                               const ThermalPlacement& placement, const TrajectoryDrift& drift,
                               const std::vector<FrameGeometry>& geometries,
-                              std::vector<Sample>& samples) const {
+                              std::vector<PointSample>& samples) const {
   samples.clear();
   const Eigen::Matrix<double, 3, 2> tangents = TangentsOf(point.n_world);
   const Eigen::Matrix3d& R_thermal_depth = placement.T_thermal_depth.linear();
@@ -290,7 +183,7 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
         projection.by_point *
         (R_thermal_depth * (geometry.velocity_depth_world * point.p_world.homogeneous()));
     by_correction.block<2, 2>(0, kPrincipalX) = Eigen::Matrix2d::Identity();
-    Sample sample;
+    PointSample sample;
     sample.kelvin = seen->kelvin;
     sample.gradient_k_m = pixels_per_metre.transpose() * seen->gradient_k_px;
     const Eigen::Matrix2d metres_per_pixel = pixels_per_metre.inverse();
@@ -309,65 +202,12 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
   }
 }
 
-void TextureAlignment::AddEpoch(const std::vector<Sample>& samples, const Epoch& epoch,
-                                const PointTexture& texture, double weight, Eigen::MatrixXd& slopes,
-                                Sums& sums) {
-  // By parameter and sample.
-  const Eigen::Index parameters = sums.equations.gradient.size();
-  slopes.setZero(parameters, static_cast<Eigen::Index>(epoch.count));
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(parameters), by_reflectivity = mean;
-  Eigen::Index column = 0;
-  for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
-    const Sample& sample = samples[i];
-    if (sample.held_out) continue;
-    auto slope = slopes.col(column++);
-    slope.head<kPlacementParameters>() = sample.shift.transpose() * texture.gradient_k_m;
-    if (parameters > kPlacementParameters) {
-      const Eigen::Matrix<double, TrajectoryDrift::kPerKnot, 1> drift =
-          sample.drift_shift.transpose() * texture.gradient_k_m;
-      const Eigen::Index first = kPlacementParameters + sample.drift.first;
-      slope.segment<TrajectoryDrift::kPerKnot>(first) = (1.0 - sample.drift.fraction) * drift;
-      slope.segment<TrajectoryDrift::kPerKnot>(first + TrajectoryDrift::kPerKnot) =
-          sample.drift.fraction * drift;
-    }
-    mean += slope;
-    by_reflectivity += (sample.reflectivity - epoch.reflectivity) * slope;
-  }
-  mean /= epoch.count;
-  by_reflectivity /= epoch.reflectivity_squares;
-  column = 0;
-  for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
-    const Sample& sample = samples[i];
-    if (sample.held_out) continue;
-    auto slope = slopes.col(column++);
-    slope -= mean + (sample.reflectivity - epoch.reflectivity) * by_reflectivity;
-    sums.equations.part_gradients[static_cast<std::size_t>(sample.part)] +=
-        weight * epoch.Difference(sample) * slope;
-  }
-  sums.equations.information.selfadjointView<Eigen::Lower>().rankUpdate(slopes, weight);
-}
-
-void TextureAlignment::AddPoint(const std::vector<Sample>& samples, Eigen::MatrixXd& slopes,
-                                Sums& sums) {
-  const std::optional<PointTexture> texture = TextureOf(samples);
-  if (!texture) return;
-  ++sums.equations.seen_points;
-  if (!texture->is_significant) return;
-  ++sums.equations.textured_points;
-  const std::vector<Epoch> epochs = EpochsOf(samples);
-  const std::optional<double> variance_k2 = Variance(epochs);
-  if (!variance_k2) return;
-  const double edge_k = kMisalignment_px * texture->mean_slope_k_px;
-  for (const Epoch& epoch : epochs) {
-    AddEpoch(samples, epoch, *texture, 1.0 / (*variance_k2 + edge_k * edge_k), slopes, sums);
-  }
-}
-
-TextureAlignment::HeldOutPoint TextureAlignment::HeldOutAt(const std::vector<Sample>& samples) {
-  const std::vector<Epoch> epochs = EpochsOf(samples);
+TextureAlignment::HeldOutPoint TextureAlignment::HeldOutAt(
+    const std::vector<PointSample>& samples) {
+  const std::vector<PointEpoch> epochs = EpochsOf(samples);
   HeldOutPoint point;
-  point.variance_k2 = Variance(epochs).value_or(0.0);
-  for (const Epoch& epoch : epochs) {
+  point.variance_k2 = VarianceOf(epochs).value_or(0.0);
+  for (const PointEpoch& epoch : epochs) {
     for (std::size_t i = epoch.begin; i < epoch.end; ++i) {
       if (!samples[i].held_out) continue;
       point.squares_k2 += std::pow(epoch.Difference(samples[i]), 2);
@@ -388,7 +228,7 @@ HeldOutComparison TextureAlignment::CompareHeldOut(const ThermalPlacement& befor
     std::vector<HeldOutPoint> result(points);
     pool_.ParallelFor(static_cast<int>(points), [&](int index) {
       const auto i = static_cast<std::size_t>(index);
-      std::vector<Sample> samples;
+      std::vector<PointSample> samples;
       Gather(views_.points[i], showing_[i], placement, none, geometries, samples);
       result[i] = HeldOutAt(samples);
     });
@@ -417,23 +257,23 @@ AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement
   const std::vector<FrameGeometry> geometries = Geometries(placement, drift);
   const std::size_t tasks = (points + kPointsPerTask - 1) / kPointsPerTask;
   const int parameters = kPlacementParameters + drift.size();
-  std::vector<Sums> sums(tasks, Sums(parts_, parameters));
+  std::vector<AlignmentEquations> parts(tasks, NoEquations(parts_, parameters));
   pool_.ParallelFor(static_cast<int>(tasks), [&](int index) {
     const auto task = static_cast<std::size_t>(index);
-    std::vector<Sample> samples;
-    Eigen::MatrixXd slopes;
+    std::vector<PointSample> samples;
     for (std::size_t i = task * kPointsPerTask; i < std::min(points, (task + 1) * kPointsPerTask);
          ++i) {
       Gather(views_.points[i], showing_[i], placement, drift, geometries, samples);
-      AddPoint(samples, slopes, sums[task]);
+      AddPoint(samples, parts[task]);
     }
   });
-  Sums total(parts_, parameters);
-  for (const Sums& sum : sums) total.Add(sum);
-  AlignmentEquations& equations = total.equations;
-  equations.information = equations.information.selfadjointView<Eigen::Lower>();
+  AlignmentEquations equations = NoEquations(parts_, parameters);
+  for (const AlignmentEquations& part : parts) Add(part, equations);
+  // Only the lower half was summed.
+  const Eigen::MatrixXd information = equations.information.selfadjointView<Eigen::Lower>();
+  equations.information = information;
   for (const Eigen::VectorXd& gradient : equations.part_gradients) equations.gradient += gradient;
-  return std::move(equations);
+  return equations;
 }
 
 }  // namespace isotherm

@@ -2,28 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
+#include "ground/calibration/alignment_equations.h"
+#include "ground/calibration/point_samples.h"
 #include "ground/calibration/texture_consistency.h"
 #include "ground/calibration/thermal_placement.h"
 #include "ground/calibration/trajectory_drift.h"
 
 namespace isotherm {
-
-/// Says how the thermal images of a scan disagree about its surface at one placement and drift, and
-/// which small corrections of them would make them agree: first the placement's
-/// (kPlacementParameters), then the drift's values if they are asked for.
-struct AlignmentEquations {
-  /// Second and first derivatives of the loss: its minimum is near -information^-1 gradient.
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-  std::vector<Eigen::VectorXd> part_gradients;  ///< By part of the scan; `gradient` is their sum.
-  int seen_points = 0;                          ///< Points that enough frames show.
-  int textured_points = 0;  ///< The temperature changes along the surface at so many of them.
-};
 
 /// Says how well held-out frames fit what the others say about the surface, at two placements.
 struct HeldOutComparison {
@@ -57,28 +46,16 @@ class TextureAlignment {
 
  private:
   struct FrameGeometry;
-  struct Sample;
-  struct PointTexture;
-  struct Epoch;
   struct HeldOutPoint;
-  struct Sums;
 
   std::vector<double> Distances() const;
   std::vector<FrameGeometry> Geometries(const ThermalPlacement& placement,
                                         const TrajectoryDrift& drift) const;
   void Gather(const TexturePoint& point, const std::vector<std::uint32_t>& frames,
               const ThermalPlacement& placement, const TrajectoryDrift& drift,
-              const std::vector<FrameGeometry>& geometries, std::vector<Sample>& samples) const;
-  static std::optional<PointTexture> TextureOf(const std::vector<Sample>& samples);
-  static void Complete(const std::vector<Sample>& samples, Epoch& epoch);
-  /// How far one image differs from what others say, K^2; nullopt without epochs.
-  static std::optional<double> Variance(const std::vector<Epoch>& epochs);
-  static std::vector<Epoch> EpochsOf(const std::vector<Sample>& samples);
-  static void AddEpoch(const std::vector<Sample>& samples, const Epoch& epoch,
-                       const PointTexture& texture, double weight, Eigen::MatrixXd& slopes,
-                       Sums& sums);
-  static HeldOutPoint HeldOutAt(const std::vector<Sample>& samples);
-  static void AddPoint(const std::vector<Sample>& samples, Eigen::MatrixXd& slopes, Sums& sums);
+              const std::vector<FrameGeometry>& geometries,
+              std::vector<PointSample>& samples) const;
+  static HeldOutPoint HeldOutAt(const std::vector<PointSample>& samples);
 
   const ScanViews& views_;
   ThreadPool& pool_;
