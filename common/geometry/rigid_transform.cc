@@ -31,12 +31,6 @@ RigidTransform TransformFromTwist(const Eigen::Matrix<double, 6, 1>& twist) {
   return transform;
 }
 
-Eigen::Matrix3d DerivativeByRotation(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d derivative;
-  derivative << 0.0, v.z(), -v.y(), -v.z(), 0.0, v.x(), v.y(), -v.x(), 0.0;
-  return derivative;
-}
-
 double RotationAngle(const RigidTransform& a, const RigidTransform& b) {
   const Eigen::Quaterniond difference(Eigen::Matrix3d(a.linear().transpose() * b.linear()));
   return 2.0 * std::atan2(difference.vec().norm(), std::abs(difference.w()));

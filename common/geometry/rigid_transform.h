@@ -21,9 +21,6 @@ RigidTransform Interpolate(const RigidTransform& a, const RigidTransform& b, dou
 /// ICP).
 RigidTransform TransformFromTwist(const Eigen::Matrix<double, 6, 1>& twist);
 
-/// How fast `v` moves as it is turned about each axis: the columns are e_j x v, per radian.
-Eigen::Matrix3d DerivativeByRotation(const Eigen::Vector3d& v);
-
 /// Angle of the relative rotation in radians, [0, pi].
 double RotationAngle(const RigidTransform& a, const RigidTransform& b);
 

@@ -30,6 +30,12 @@ PlacementVector CorrectionBetween(const ThermalPlacement& from, const ThermalPla
   return correction;
 }
 
+Eigen::Matrix3d DerivativeByRotation(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d derivative;
+  derivative << 0.0, v.z(), -v.y(), -v.z(), 0.0, v.x(), v.y(), -v.x(), 0.0;
+  return derivative;
+}
+
 ProjectionDerivatives ProjectWithDerivatives(const CameraModel& camera,
                                              const Eigen::Vector3d& p_thermal) {
   const double inverse_z = 1.0 / p_thermal.z();

@@ -43,6 +43,9 @@ ThermalPlacement Corrected(const ThermalPlacement& placement, const PlacementVec
 /// The correction that makes `to` of `from`; their cameras differ by the principal point only.
 PlacementVector CorrectionBetween(const ThermalPlacement& from, const ThermalPlacement& to);
 
+/// How fast `v` moves as it is turned about each axis: the columns are e_j x v, per radian.
+Eigen::Matrix3d DerivativeByRotation(const Eigen::Vector3d& v);
+
 /// The pixel that shows a point, with its derivatives.
 struct ProjectionDerivatives {
   Eigen::Vector2d pixel;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ground/calibration/image_motion.h"
+#include "ground/calibration/thermal_placement.h"
 
 namespace isotherm {
 
