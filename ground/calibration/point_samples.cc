@@ -22,6 +22,14 @@ double MinReflectivitySquares(double count) {
   return kMinReflectivitySpread * kMinReflectivitySpread * count;
 }
 
+/// Adds `times` the square of a vector to the lower half of a matrix.
+void AddSquare(double times, const Eigen::VectorXd& vector, Eigen::MatrixXd& sum) {
+  for (Eigen::Index column = 0; column < vector.size(); ++column) {
+    const Eigen::Index rest = vector.size() - column;
+    sum.col(column).tail(rest) += times * vector[column] * vector.tail(rest);
+  }
+}
+
 /// Says how the temperature of one sample changes with the placement and with the two knots around
 /// it.
 struct SampleSlope {
@@ -145,10 +153,9 @@ void AddEpoch(const std::vector<PointSample>& samples, const PointEpoch& epoch,
                 by_reflectivity);
   }
   // All slopes are less their mean, and less what goes along with the reflectivity.
-  auto lower = information.selfadjointView<Eigen::Lower>();
-  lower.rankUpdate(mean, -weight * epoch.count);
-  lower.rankUpdate(by_reflectivity,
-                   -weight * (epoch.reflectivity_squares + MinReflectivitySquares(epoch.count)));
+  AddSquare(-weight * epoch.count, mean, information);
+  AddSquare(-weight * (epoch.reflectivity_squares + MinReflectivitySquares(epoch.count)),
+            by_reflectivity, information);
   for (std::size_t i = epoch.begin, end = epoch.begin; i < epoch.end; i = end) {
     const int part = samples[i].part;
     Eigen::VectorXd& gradient = equations.part_gradients[static_cast<std::size_t>(part)];

@@ -51,6 +51,7 @@ RgbImage CountsRendering(const Image<std::uint16_t>& counts) {
 Result<RgbImage> RenderingOf(const RecordedItem& item) {
   const auto* depth = std::get_if<RecordedDepth>(&item);
   const auto* thermal = std::get_if<RecordedThermal>(&item);
+  if (depth == nullptr && thermal == nullptr) return Err(InvalidArgument("not an image"));
   const Result<Image<std::uint16_t>> image =
       Decode(depth != nullptr ? depth->frame.image : thermal->frame.image);
   if (!image) return Err(image.error());
