@@ -144,7 +144,7 @@ ScanViews ScanOf(const WallScan& scan) {
     pose.translation() += wander_m;
     views.trajectory.push_back({kWallStart + FromSeconds(i / kDepthRate_hz), pose});
   }
-  for (std::uint64_t i = 0; i < 800; ++i) {
+  for (std::uint64_t i = 0; i < 600; ++i) {
     const double x_m = 0.9 * (UniformNoise(5, 2 * i) - 0.5);
     const double y_m = 0.7 * (UniformNoise(5, 2 * i + 1) - 0.5);
     views.points.push_back({WallPoint(x_m, y_m, scan), WallNormal(x_m, scan)});
@@ -216,7 +216,7 @@ PlacementVector Errors(const Refinement& refinement) {
 
 TEST(RigRefinementTest, PlacementIsFoundAgain) {
   double squares = 0.0;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1, 2}) {
     const Result<Refinement> refined = RefineWall({.seed = seed}, SomewhatOff(seed));
     ASSERT_TRUE(refined.has_value()) << refined.error().message();
     const PlacementVector left = CorrectionBetween(TruePlacement(), refined->after);
@@ -230,7 +230,7 @@ TEST(RigRefinementTest, PlacementIsFoundAgain) {
     EXPECT_EQ(refined->observed_directions, kPlacementParameters);
     EXPECT_GT(refined->shift.rms_px, 1.0);
     EXPECT_LT(refined->held_out.after_k, 0.5 * refined->held_out.before_k);
-    squares += Errors(*refined).squaredNorm() / (3.0 * kPlacementParameters);
+    squares += Errors(*refined).squaredNorm() / (2.0 * kPlacementParameters);
   }
   // Uncertainties are neither too small nor an excuse.
   EXPECT_LT(std::sqrt(squares), 2.0);
@@ -255,11 +255,11 @@ TEST(RigRefinementTest, OffsetAfterANucIsNoTexture) {
 
 TEST(RigRefinementTest, WanderingPosesAreInTheUncertainty) {
   double squares = 0.0;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
     const Result<Refinement> refined =
         RefineWall({.seed = seed, .drift_m = 0.0003}, SomewhatOff(seed));
     ASSERT_TRUE(refined.has_value()) << refined.error().message();
-    squares += Errors(*refined).squaredNorm() / (4.0 * kPlacementParameters);
+    squares += Errors(*refined).squaredNorm() / (3.0 * kPlacementParameters);
   }
   std::printf("errors over uncertainty, root mean square: %.2f\n", std::sqrt(squares));
   EXPECT_LT(std::sqrt(squares), 2.0);
