@@ -17,6 +17,13 @@ constexpr std::uint64_t kMaxRigBytes = 1U << 20;
 
 }  // namespace
 
+void SetCovariance(const Eigen::MatrixXd& covariance, CalibrationRecord& record) {
+  record.clear_covariance();
+  for (Eigen::Index y = 0; y < covariance.rows(); ++y) {
+    for (Eigen::Index x = 0; x < covariance.cols(); ++x) record.add_covariance(covariance(y, x));
+  }
+}
+
 Status EditRigFile(const std::filesystem::path& path,
                    const std::function<Status(RigCalibration&)>& edit) {
   RigCalibration rig;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <functional>
 
@@ -7,7 +8,11 @@
 
 namespace isotherm {
 
+class CalibrationRecord;
 class RigCalibration;
+
+/// Sets the whole matrix, row by row.
+void SetCovariance(const Eigen::MatrixXd& covariance, CalibrationRecord& record);
 
 /// Changes a rig file, or makes a new one: `edit` gets what the file says. Nothing is written if it
 /// fails or if the result could not be read again. As it was, the file is kept beside it as

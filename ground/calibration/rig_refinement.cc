@@ -144,7 +144,7 @@ class Refiner {
 
   /// The views show the scan from `placement`.
   Status Refine(const Level& level, const std::function<void(double)>& progress) {
-    TextureAlignment alignment(views_, true, pool_);
+    TextureAlignment alignment(views_, pool_);
     alignment.BlurImages(level.blur_px);
     TrajectoryDrift drift;
     if (level.with_drift) drift = TrajectoryDrift(views_, kKnotSpacing_s, kMaxKnots);
@@ -178,7 +178,7 @@ class Refiner {
 
   /// After the last level.
   Refinement Finish() {
-    TextureAlignment alignment(views_, true, pool_);
+    TextureAlignment alignment(views_, pool_);
     refinement_.held_out =
         alignment.CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
     refinement_.correction = CorrectionBetween(refinement_.before, refinement_.after);

@@ -83,14 +83,14 @@ struct TextureAlignment::HeldOutPoint {
   double variance_k2 = 0.0;  ///< The others' own.
 };
 
-TextureAlignment::TextureAlignment(const ScanViews& views, bool hold_out, ThreadPool& pool)
+TextureAlignment::TextureAlignment(const ScanViews& views, ThreadPool& pool)
     : views_(views), pool_(pool), showing_(views.points.size()) {
   const double length_s = PartLength(views, kPart_s);
   for (std::size_t i = 0; i < views.frames.size(); ++i) {
     const StampedThermal& frame = views.frames[i];
     const int part = static_cast<int>(ToSeconds(frame.time - views.frames.front().time) / length_s);
     part_of_frame_.push_back(part);
-    held_out_.push_back(hold_out && part % kHeldOutEvery == kHeldOutEvery - 1);
+    held_out_.push_back(part % kHeldOutEvery == kHeldOutEvery - 1);
     parts_ = std::max(parts_, part + 1);
     for (const std::uint32_t point : frame.visible)
       showing_[point].push_back(static_cast<std::uint32_t>(i));
@@ -98,10 +98,10 @@ TextureAlignment::TextureAlignment(const ScanViews& views, bool hold_out, Thread
 }
 
 void TextureAlignment::BlurImages(double sigma_px) {
-  const std::vector<double> distances_m = Distances();
-  std::vector<double> known_m;
   is_blurred_ = sigma_px > 0.0;
   if (!is_blurred_) return;
+  const std::vector<double> distances_m = Distances();
+  std::vector<double> known_m;
   std::copy_if(distances_m.begin(), distances_m.end(), std::back_inserter(known_m),
                [](double distance_m) { return distance_m > 0.0; });
   if (known_m.empty()) return;
@@ -161,6 +161,7 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
                               std::vector<PointSample>& samples) const {
   samples.clear();
   const Eigen::Matrix<double, 3, 2> tangents = TangentsOf(point.n_world);
+  const Eigen::Matrix<double, 3, TrajectoryDrift::kPerKnot> by_knot = drift.ByKnot(point.p_world);
   const Eigen::Matrix3d& R_thermal_depth = placement.T_thermal_depth.linear();
   for (const std::uint32_t i : frames) {
     const FrameGeometry& geometry = geometries[i];
@@ -188,7 +189,7 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
     sample.gradient_k_m = pixels_per_metre.transpose() * seen->gradient_k_px;
     const Eigen::Matrix2d metres_per_pixel = pixels_per_metre.inverse();
     sample.shift = metres_per_pixel * by_correction;
-    sample.drift_shift = metres_per_pixel * (by_world_point * drift.ByKnot(point.p_world));
+    sample.drift_shift = metres_per_pixel * (by_world_point * by_knot);
     sample.drift = geometry.drift;
     sample.pixels_per_metre = std::sqrt(std::abs(pixels_per_metre.determinant()));
     const double cosine =
@@ -257,18 +258,18 @@ AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement
   const std::vector<FrameGeometry> geometries = Geometries(placement, drift);
   const std::size_t tasks = (points + kPointsPerTask - 1) / kPointsPerTask;
   const int parameters = kPlacementParameters + drift.size();
-  std::vector<AlignmentEquations> parts(tasks, NoEquations(parts_, parameters));
+  std::vector<AlignmentEquations> by_task(tasks, NoEquations(parts_, parameters));
   pool_.ParallelFor(static_cast<int>(tasks), [&](int index) {
     const auto task = static_cast<std::size_t>(index);
     std::vector<PointSample> samples;
     for (std::size_t i = task * kPointsPerTask; i < std::min(points, (task + 1) * kPointsPerTask);
          ++i) {
       Gather(views_.points[i], showing_[i], placement, drift, geometries, samples);
-      AddPoint(samples, parts[task]);
+      AddPoint(samples, by_task[task]);
     }
   });
   AlignmentEquations equations = NoEquations(parts_, parameters);
-  for (const AlignmentEquations& part : parts) Add(part, equations);
+  for (const AlignmentEquations& one : by_task) Add(one, equations);
   // Only the lower half was summed.
   const Eigen::MatrixXd information = equations.information.selfadjointView<Eigen::Lower>();
   equations.information = information;

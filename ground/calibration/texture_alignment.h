@@ -24,11 +24,11 @@ struct HeldOutComparison {
 /// that show the point in the same NUC epoch, and linearises the differences by the placement
 /// (Gauss-Newton). The gradient along the surface is the mean over all images that show it: that of
 /// a single one holds noise, which would pass for knowledge. Points without a gradient above chance
-/// do not count. Every third part of the scan may be held out. Thread-compatible.
+/// do not count. Every third part of the scan is held out. Thread-compatible.
 class TextureAlignment {
  public:
   /// `views` and `pool` must outlive it. Every frame's `visible` is filled.
-  TextureAlignment(const ScanViews& views, bool hold_out, ThreadPool& pool);
+  TextureAlignment(const ScanViews& views, ThreadPool& pool);
 
   /// Compares images blurred by a Gaussian from here on: of this standard deviation at the usual
   /// distance, so that it is as wide on the surface from any distance. Otherwise nearness would

@@ -9,12 +9,6 @@
 namespace isotherm {
 namespace {
 
-void AddCovariance(const Eigen::MatrixXd& covariance, CalibrationRecord& record) {
-  for (Eigen::Index y = 0; y < covariance.rows(); ++y) {
-    for (Eigen::Index x = 0; x < covariance.cols(); ++x) record.add_covariance(covariance(y, x));
-  }
-}
-
 CalibrationRecord CommonRecord(const CalibrationReport& report) {
   CalibrationRecord record;
   record.set_date(report.date);
@@ -41,7 +35,7 @@ CalibrationRecord CameraRecord(const CalibrationReport& report, const Calibrated
   for (int i = 0; i < LensParameterCount(camera.camera.kind); ++i)
     names += fmt::format("{}{}", i > 0 ? " " : "", LensParameterName(camera.camera.kind, i));
   record.set_parameters(names);
-  AddCovariance(camera.covariance, record);
+  SetCovariance(camera.covariance, record);
   return record;
 }
 
@@ -99,7 +93,7 @@ void SetPose(const CalibrationReport& report, RigCalibration& rig) {
   record.set_views(report.pose->views);
   record.set_uncertainty_px(report.pose->transfer_sigma_px);
   record.set_parameters("rx ry rz tx ty tz");
-  AddCovariance(report.pose->covariance, record);
+  SetCovariance(report.pose->covariance, record);
   *rig.mutable_pose_calibration() = record;
 }
 

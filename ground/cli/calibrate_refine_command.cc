@@ -135,10 +135,7 @@ void SetRefined(const RefineArguments& arguments, const RecordingRefinement& ref
   record.set_features(r.textured_points);
   record.set_uncertainty_px(r.shift.sigma_px);
   record.set_parameters(std::string(kPlacementParameterNames));
-  for (int row = 0; row < kPlacementParameters; ++row) {
-    for (int column = 0; column < kPlacementParameters; ++column)
-      record.add_covariance(r.covariance(row, column));
-  }
+  SetCovariance(r.covariance, record);
   rig.set_date(record.date());
   rig.set_method(record.method());
   // It was that of other values.

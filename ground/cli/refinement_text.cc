@@ -105,7 +105,8 @@ std::string CheckText(const RecordingRefinement& refined, const RefinementVerdic
     const char* word = part == DelayVerdict::kMoved    ? "moved by"
                        : part == DelayVerdict::kAgrees ? "ok, within"
                                                        : "cannot tell here:";
-    const bool is_refuted = part == DelayVerdict::kNotAssessed && !r.held_out.improves;
+    const bool is_refuted =
+        part == DelayVerdict::kNotAssessed && r.observed_directions > 0 && !r.held_out.improves;
     return fmt::format("{:<10}{} {}{}\n", name, word, figures,
                        is_refuted ? ", but images that were held out do not agree better" : "");
   };
