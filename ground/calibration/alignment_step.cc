@@ -50,14 +50,14 @@ Reduced Reduce(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradie
 
 /// How many times larger than that of independent samples the variance of the placement's gradient
 /// is, the drift aside: the mean over the directions that are told, from the scatter of the parts.
-/// Not below one.
-double VarianceInflation(const AlignmentEquations& equations, const Eigen::VectorXd& sigma,
+/// Not below one. `to_units` are the prior's, as in Reduced.
+double VarianceInflation(const AlignmentEquations& equations, const Eigen::MatrixXd& to_units,
                          const Reduced& reduced) {
   std::vector<PlacementVector> parts;
   PlacementVector mean = PlacementVector::Zero();
   for (const Eigen::VectorXd& gradient : equations.part_gradients) {
     if (gradient.isZero(0.0)) continue;
-    const Eigen::VectorXd whitened = sigma.cwiseProduct(gradient);
+    const Eigen::VectorXd whitened = to_units.transpose() * gradient;
     parts.push_back(whitened.head<kPlacementParameters>() +
                     reduced.drift_by_placement.transpose() *
                         whitened.tail(reduced.drift_at_rest.size()));
@@ -84,14 +84,16 @@ double VarianceInflation(const AlignmentEquations& equations, const Eigen::Vecto
 
 AlignmentStep SolveAlignment(const AlignmentEquations& equations, const AlignmentPrior& prior,
                              const PlacementVector& correction, const Eigen::VectorXd& drift) {
-  Eigen::VectorXd sigma(kPlacementParameters + drift.size());
-  sigma << prior.placement_sigma, prior.drift_sigma;
-  const Eigen::MatrixXd information =
-      sigma.asDiagonal() * equations.information * sigma.asDiagonal();
-  const Eigen::VectorXd gradient = sigma.cwiseProduct(equations.gradient);
-  const Eigen::VectorXd drift_so_far = Standardized(drift, prior.drift_sigma);
+  const Eigen::Index size = kPlacementParameters + drift.size();
+  Eigen::MatrixXd to_units = Eigen::MatrixXd::Zero(size, size);
+  to_units.diagonal().head<kPlacementParameters>() = prior.placement_sigma;
+  to_units.bottomRightCorner(drift.size(), drift.size()) = prior.drift_factor;
+  const Eigen::MatrixXd information = to_units.transpose() * equations.information * to_units;
+  const Eigen::VectorXd gradient = to_units.transpose() * equations.gradient;
+  const Eigen::VectorXd drift_so_far =
+      prior.drift_factor.triangularView<Eigen::Lower>().solve(drift);
   const double inflation =
-      VarianceInflation(equations, sigma, Reduce(information, gradient, drift_so_far, 1.0));
+      VarianceInflation(equations, to_units, Reduce(information, gradient, drift_so_far, 1.0));
   const Reduced reduced = Reduce(information, gradient, drift_so_far, inflation);
   const PlacementVector so_far = Standardized(correction, prior.placement_sigma);
   const Eigen::SelfAdjointEigenSolver<PlacementMatrix> directions(reduced.information);
@@ -111,8 +113,8 @@ AlignmentStep SolveAlignment(const AlignmentEquations& equations, const Alignmen
   step.length = placement.norm();
   placement *= std::min(1.0, 1.0 / std::max(step.length, 1e-12));
   step.placement = prior.placement_sigma.cwiseProduct(placement);
-  step.drift = prior.drift_sigma.cwiseProduct(reduced.drift_at_rest +
-                                              reduced.drift_by_placement * placement);
+  step.drift =
+      prior.drift_factor * (reduced.drift_at_rest + reduced.drift_by_placement * placement);
   step.covariance =
       prior.placement_sigma.asDiagonal() * covariance * prior.placement_sigma.asDiagonal();
   return step;

@@ -16,13 +16,19 @@ struct AlignmentStep {
   /// directions: these keep the prior's variance.
   PlacementMatrix covariance = PlacementMatrix::Zero();
   int observed_directions = 0;  ///< How many of kPlacementParameters the images tell.
+
+  void Halve() {
+    placement *= 0.5;
+    drift *= 0.5;
+  }
 };
 
 /// Holds what is known before the images are looked at, about the placement's correction and the
-/// drift: both are zero, with these standard deviations.
+/// drift: both are zero.
 struct AlignmentPrior {
-  PlacementVector placement_sigma = PlacementVector::Zero();
-  Eigen::VectorXd drift_sigma;
+  PlacementVector placement_sigma = PlacementVector::Zero();  ///< Standard deviations.
+  /// Makes a drift of independent standard normal values (TrajectoryDrift::PriorFactor).
+  Eigen::MatrixXd drift_factor;
 };
 
 /// Solves the equations together with the prior, after a correction and a drift so far. Samples are

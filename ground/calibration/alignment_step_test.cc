@@ -11,7 +11,7 @@ constexpr int kKnots = 6;
 constexpr int kAll = kPlacementParameters + kKnots;
 
 AlignmentPrior UnitPrior(double drift_sigma) {
-  return {PlacementVector::Ones(), Eigen::VectorXd::Constant(kKnots, drift_sigma)};
+  return {PlacementVector::Ones(), drift_sigma * Eigen::MatrixXd::Identity(kKnots, kKnots)};
 }
 
 /// Equations of a quadratic loss with its minimum at `minimum`, linearised at zero, whose parts
@@ -116,8 +116,30 @@ TEST(AlignmentStepTest, WhatIsNotToldLeadsBackToThePrior) {
   EXPECT_NEAR(step.placement[kRotationX], 0.0, 1e-9);
 }
 
+/// Knots that are all off alike are as likely as one that is: together they may pass for a value
+/// that each alone could not.
+TEST(AlignmentStepTest, ADriftThatStaysAlikeLeavesMoreUncertain) {
+  Eigen::VectorXd together = Eigen::VectorXd::Zero(kAll);
+  together[kDelay] = 1.0;
+  together.tail<kKnots>().setConstant(1.0 / kKnots);
+  const Eigen::MatrixXd information =
+      1e8 * together * together.transpose() + 1e-6 * Eigen::MatrixXd::Identity(kAll, kAll);
+  const auto sigma = [&](const Eigen::MatrixXd& factor) {
+    const AlignmentStep step =
+        SolveAlignment(Quadratic(information, Eigen::VectorXd::Zero(kAll), 0.0),
+                       {PlacementVector::Ones(), 0.1 * factor}, PlacementVector::Zero(),
+                       Eigen::VectorXd::Zero(kKnots));
+    return std::sqrt(step.covariance(kDelay, kDelay));
+  };
+  Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(kKnots, kKnots);
+  alike.col(0).setOnes();
+  alike.diagonal().tail<kKnots - 1>().setConstant(1e-6);
+  EXPECT_NEAR(sigma(Eigen::MatrixXd::Identity(kKnots, kKnots)), 0.1 / std::sqrt(6.0), 0.002);
+  EXPECT_NEAR(sigma(alike), 0.1, 0.002);
+}
+
 TEST(AlignmentStepTest, PriorOfZeroFixes) {
-  AlignmentPrior prior = UnitPrior(0.0);
+  AlignmentPrior prior = UnitPrior(1e-9);
   prior.placement_sigma[kDelay] = 0.0;
   const Eigen::MatrixXd information = 1000.0 * Eigen::MatrixXd::Identity(kAll, kAll);
   const AlignmentStep step =
@@ -125,7 +147,7 @@ TEST(AlignmentStepTest, PriorOfZeroFixes) {
                      PlacementVector::Zero(), Eigen::VectorXd::Zero(kKnots));
   EXPECT_EQ(step.placement[kDelay], 0.0);
   EXPECT_NEAR(step.placement[kRotationX], 0.2, 0.01);
-  EXPECT_TRUE(step.drift.isZero(0.0));
+  EXPECT_TRUE(step.drift.isZero(1e-9));
 }
 
 }  // namespace

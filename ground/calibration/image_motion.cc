@@ -16,9 +16,6 @@ constexpr double kHalfBaseline_s = 0.08;
 constexpr double kMinDepth_m = 0.05;
 // Less of the squared speed than this is rounding, not a change of it.
 constexpr double kMinChange = 1e-9;
-// How long tracked poses remember what they are off by: the surface that they are tracked against
-// was built by poses that drifted alike, and changes as the rig comes to see other parts of it.
-constexpr double kDriftMemory_s = 4.0;
 // Of the pairs' sum below, a bounded number of terms however long the scan is.
 constexpr std::size_t kMaxVelocities = 1200;
 

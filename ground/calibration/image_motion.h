@@ -10,6 +10,10 @@ namespace isotherm {
 
 struct ScanViews;
 
+/// How long tracked poses remember what they are off by: the surface that they are tracked against
+/// was built by poses that drifted alike, and changes as the rig comes to see other parts of it.
+inline constexpr double kDriftMemory_s = 4.0;
+
 /// The mean of the surface's points, metres in the trajectory's world.
 Eigen::Vector3d MiddleOfSurface(const ScanViews& views);
 

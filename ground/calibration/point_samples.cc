@@ -40,6 +40,7 @@ struct SampleSlope {
         first(kPlacementParameters + sample.drift.first) {
     const Eigen::Matrix<double, TrajectoryDrift::kPerKnot, 1> drift =
         sample.drift_shift.transpose() * texture.gradient_k_m;
+    placement.segment<2>(kNearInfluence) = sample.by_influence;
     knots << (1.0 - sample.drift.fraction) * drift, sample.drift.fraction * drift;
   }
 

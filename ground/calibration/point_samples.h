@@ -18,6 +18,8 @@ struct PointSample {
   Eigen::Vector2d gradient_k_m;  ///< Along the surface.
   /// Where on the surface the pixel of the point lies after a correction, metres per unit.
   Eigen::Matrix<double, 2, kPlacementParameters> shift;
+  /// Kelvin per unit of kNearInfluence and kTotalInfluence (OwnTemperatures::ByFractions).
+  Eigen::Vector2d by_influence;
   Eigen::Matrix<double, 2, TrajectoryDrift::kPerKnot> drift_shift;  ///< The same by a knot.
   TrajectoryDrift::Place drift;
   double pixels_per_metre = 0.0;

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ground/calibration/alignment_step.h"
@@ -20,17 +21,14 @@ struct Level {
   double blur_px;  ///< A misalignment of about three times as much is found.
   double range_s;  ///< The delay may be off by this.
   std::size_t points;
-  bool with_drift;
 };
 // Blurred images lead from far away. Sharp ones decide: a blur is not equally wide on all of a
 // surface, which pulls the principal point by pixels.
-constexpr Level kLevels[] = {{8.0, 0.06, 3000, false},
-                             {4.0, 0.03, 3000, false},
-                             {2.0, 0.01, 3000, false},
-                             {0.0, 0.01, 30'000, true}};
-constexpr int kMaxIterations = 10;
+constexpr Level kLevels[] = {
+    {8.0, 0.06, 3000}, {4.0, 0.03, 3000}, {2.0, 0.01, 3000}, {0.0, 0.01, 30'000}};
+constexpr int kMaxIterations = 12;
 // The end of the iterations, in standard deviations of the prior: where blurred images lead need
-// not be exact.
+// not be exact. Both are a fraction of what is wrong alike in the whole scan (below).
 constexpr double kConverged = 0.005, kNearEnough = 0.02;
 // Points that held-out images are compared at.
 constexpr std::size_t kHeldOutPoints = 6000;
@@ -41,13 +39,14 @@ constexpr int kMinTexturedPoints = 300;
 constexpr double kKnotSpacing_s = 0.7;
 constexpr int kMaxKnots = 24;
 // What one knot is off by: half of what poses drift by within seconds (ScanViews::pose_drift_m),
-// which is a cautious figure for a verdict. Rendered scans are off by as much along each axis.
+// which is a cautious figure for a verdict. Rendered scans are off by as much along each axis; with
+// twice as much, simulated ones were refined no better.
 constexpr double kDriftOfKnot = 0.5;
 // What is wrong alike in the whole scan, so that its parts do not show it: blur and inertia of the
-// camera, the surface that drifting poses made. On simulated scans of 15 s with all of a PI 450's
-// faults errors are as large on average.
+// camera, the surface that drifting poses made. In the calibration-check experiment, whose cameras
+// have all of a PI 450's faults, errors are as large on average.
 constexpr double kCommonRotation_rad = 0.0002, kCommonTranslation_m = 0.0002;
-constexpr double kCommonDelay_s = 0.0004, kCommonPrincipal_px = 0.1;
+constexpr double kCommonDelay_s = 0.0004, kCommonPrincipal_px = 0.1, kCommonInfluence = 0.002;
 // The same of a turn whose shift of the image a shift of the principal point takes back: defocus
 // moves such pairs by up to 0.13 degrees and half a pixel in scans of 10 s.
 constexpr double kCommonPair_rad = 0.0012;
@@ -58,7 +57,8 @@ PlacementVector SigmasOf(const RefinementPrior& prior) {
   PlacementVector sigma;
   sigma << Eigen::Vector3d::Constant(prior.rotation_rad),
       Eigen::Vector3d::Constant(prior.translation_m), prior.delay_s,
-      Eigen::Vector2d::Constant(prior.principal_point_px);
+      Eigen::Vector2d::Constant(prior.principal_point_px),
+      Eigen::Vector2d::Constant(prior.influence);
   return sigma;
 }
 
@@ -67,7 +67,8 @@ PlacementMatrix CommonCovariance(const CameraModel& camera, const PlacementVecto
   const PlacementVector alone = SigmasOf({.rotation_rad = kCommonRotation_rad,
                                           .translation_m = kCommonTranslation_m,
                                           .delay_s = kCommonDelay_s,
-                                          .principal_point_px = kCommonPrincipal_px});
+                                          .principal_point_px = kCommonPrincipal_px,
+                                          .influence = kCommonInfluence});
   PlacementMatrix covariance = alone.cwiseMin(prior_sigma).cwiseAbs2().asDiagonal();
   if (prior_sigma[kRotationX] > 0.0 && prior_sigma[kPrincipalX] > 0.0) {
     PlacementVector about_x = PlacementVector::Zero(), about_y = about_x;
@@ -79,16 +80,11 @@ PlacementMatrix CommonCovariance(const CameraModel& camera, const PlacementVecto
   return covariance;
 }
 
-Eigen::VectorXd DriftSigmas(const ScanViews& views, const TrajectoryDrift& drift) {
-  const double shift_m = kDriftOfKnot * views.pose_drift_m;
+Eigen::MatrixXd DriftFactor(const ScanViews& views, const TrajectoryDrift& drift) {
+  const double sigma_m = kDriftOfKnot * views.pose_drift_m;
   // A turn that moves the surface as far in the image.
-  const double turn_rad = shift_m * PixelsPerMetre(views).value_or(0.0) / views.thermal_camera.fx;
-  Eigen::VectorXd sigmas(drift.size());
-  for (int i = 0; i < drift.size(); i += TrajectoryDrift::kPerKnot) {
-    sigmas.segment<3>(i).setConstant(shift_m);
-    sigmas.segment<3>(i + 3).setConstant(turn_rad);
-  }
-  return sigmas;
+  return drift.PriorFactor(sigma_m,
+                           sigma_m * PixelsPerMetre(views).value_or(0.0) / views.thermal_camera.fx);
 }
 
 /// How far points move in the images from one placement to another, root mean square, pixels.
@@ -145,44 +141,29 @@ class Refiner {
   /// The views show the scan from `placement`.
   Status Refine(const Level& level, const std::function<void(double)>& progress) {
     TextureAlignment alignment(views_, pool_);
-    alignment.BlurImages(level.blur_px);
-    TrajectoryDrift drift;
-    if (level.with_drift) drift = TrajectoryDrift(views_, kKnotSpacing_s, kMaxKnots);
-    const AlignmentPrior prior{refinement_.prior_sigma, DriftSigmas(views_, drift)};
-    for (int i = 0; i < kMaxIterations; ++i) {
-      const AlignmentEquations equations =
-          alignment.Linearize(refinement_.after, drift, level.points);
-      if (equations.textured_points < kMinTexturedPoints) {
-        // A blur may hide what sharp images show.
-        return level.blur_px > 0.0 ? OkStatus() : TooFew(equations);
-      }
-      const AlignmentStep step =
-          SolveAlignment(equations, prior, CorrectionBetween(refinement_.before, refinement_.after),
-                         drift.values());
-      refinement_.covariance = step.covariance;
-      refinement_.observed_directions = step.observed_directions;
-      refinement_.textured_points = equations.textured_points;
-      refinement_.points = equations.seen_points;
-      refinement_.after = Corrected(refinement_.after, step.placement);
-      drift.Add(step.drift);
-      if (progress) progress((i + 1.0) / kMaxIterations);
-      // The drift follows the placement.
-      if (step.length < (level.with_drift ? kConverged : kNearEnough) && i > 0) return OkStatus();
-    }
-    if (!level.with_drift) return OkStatus();
-    return FailedPrecondition(
-        fmt::format("the search does not settle within {} steps: scan for longer, to and fro, "
-                    "nearer and farther",
-                    kMaxIterations));
+    alignment.PrepareImages(refinement_.after.influence, level.blur_px);
+    const AlignmentPrior prior{refinement_.prior_sigma, {}};
+    const bool is_last = level.blur_px == 0.0;
+    const Result<bool> settled =
+        Settle(alignment, level.points, prior, TrajectoryDrift(),
+               is_last ? kConverged : kNearEnough, PartOf(progress, 0.0, is_last ? 0.4 : 1.0));
+    // A blur may hide what sharp images show.
+    if (!is_last) return OkStatus();
+    if (!settled) return settled.error();
+    return RefineWithDrift(alignment, level.points, PartOf(progress, 0.4, 1.0));
   }
 
   /// After the last level.
   Refinement Finish() {
     TextureAlignment alignment(views_, pool_);
+    alignment.PrepareImages(refinement_.after.influence, 0.0);
     refinement_.held_out =
         alignment.CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
+    refinement_.epoch_offset =
+        LargestEpochOffset(alignment.CompareEpochs(refinement_.after, kHeldOutPoints));
     refinement_.correction = CorrectionBetween(refinement_.before, refinement_.after);
     refinement_.covariance += CommonCovariance(refinement_.after.camera, refinement_.prior_sigma);
+    refinement_.covariance(kDelay, kDelay) += std::pow(DelaySigmaOfDriftAlong(), 2);
     refinement_.shift = ShiftOf(views_, refinement_);
     refinement_.frames = static_cast<std::size_t>(
         std::count_if(views_.frames.begin(), views_.frames.end(),
@@ -191,6 +172,73 @@ class Refiner {
   }
 
  private:
+  /// Corrects the placement until it does not change any more; false if it still does after many
+  /// steps. Fails if too little can be compared.
+  Result<bool> Settle(const TextureAlignment& alignment, std::size_t points,
+                      const AlignmentPrior& prior, TrajectoryDrift drift, double converged,
+                      const std::function<void(double)>& progress) {
+    AlignmentStep step;
+    PlacementVector last_step = PlacementVector::Zero();
+    for (int i = 0; i < kMaxIterations; ++i) {
+      const AlignmentEquations equations = alignment.Linearize(refinement_.after, drift, points);
+      if (equations.textured_points < kMinTexturedPoints) return Err(TooFew(equations));
+      step =
+          SolveAlignment(equations, prior, CorrectionBetween(refinement_.before, refinement_.after),
+                         drift.values());
+      refinement_.covariance = step.covariance;
+      refinement_.observed_directions = step.observed_directions;
+      refinement_.textured_points = equations.textured_points;
+      refinement_.points = equations.seen_points;
+      if (TurnsBack(step.placement, last_step)) step.Halve();
+      last_step = step.placement;
+      refinement_.after = Corrected(refinement_.after, step.placement);
+      drift.Add(step.drift);
+      if (progress) progress((i + 1.0) / kMaxIterations);
+      // The drift follows the placement.
+      if (step.length < converged && i > 0) return true;
+    }
+    // It may go to and fro, as points come to be compared and cease to be.
+    return step.length < kNearEnough;
+  }
+
+  /// Once more, together with what the tracked poses drift by. The delay stays: a drift along the
+  /// motion passes for one, and the freer it is, the more of it does.
+  Status RefineWithDrift(const TextureAlignment& alignment, std::size_t points,
+                         const std::function<void(double)>& progress) {
+    const double delay_variance = refinement_.covariance(kDelay, kDelay);
+    const bool delay_is_told = delay_variance < 0.25 * std::pow(refinement_.prior_sigma[kDelay], 2);
+    const TrajectoryDrift drift(views_, kKnotSpacing_s, kMaxKnots);
+    AlignmentPrior prior{refinement_.prior_sigma, DriftFactor(views_, drift)};
+    prior.placement_sigma[kDelay] = 0.0;
+    const Result<bool> settled = Settle(alignment, points, prior, drift, kConverged, progress);
+    if (!settled) return settled.error();
+    if (!*settled) {
+      return FailedPrecondition(
+          fmt::format("the search does not settle within {} steps: scan for longer, to and fro, "
+                      "nearer and farther",
+                      kMaxIterations));
+    }
+    refinement_.covariance(kDelay, kDelay) = delay_variance;
+    refinement_.observed_directions += delay_is_told ? 1 : 0;
+    return OkStatus();
+  }
+
+  /// What poses are off by along the motion passes for a delay, and the images agree: the drift
+  /// that is solved for does not show it. Not more than was known before.
+  double DelaySigmaOfDriftAlong() const {
+    const double drift_px = views_.pose_drift_m * PixelsPerMetre(views_).value_or(0.0);
+    constexpr double kWholeScan_s = std::numeric_limits<double>::infinity();
+    return std::min(refinement_.prior_sigma[kDelay],
+                    DelaySigmaOfDrift(ImageVelocities(views_), drift_px, kWholeScan_s));
+  }
+
+  /// A step back from where the last one led: both go too far, for gradients are means of images
+  /// that do not agree yet.
+  bool TurnsBack(const PlacementVector& step, const PlacementVector& last) const {
+    const PlacementVector sigma = refinement_.prior_sigma.cwiseMax(1e-12);
+    return step.cwiseQuotient(sigma).dot(last.cwiseQuotient(sigma)) < 0.0;
+  }
+
   static Status TooFew(const AlignmentEquations& equations) {
     return FailedPrecondition(fmt::format(
         "temperatures change along the surface at {} of {} points that the thermal camera sees "

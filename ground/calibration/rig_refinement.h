@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <string>
+#include <optional>
 
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
@@ -17,6 +17,7 @@ struct RefinementPrior {
   double translation_m = 0.010;
   double delay_s = 0.020;
   double principal_point_px = 5.0;
+  double influence = 0.05;  ///< Each fraction of the scene's influence.
 };
 
 /// Holds a distance in the thermal image, pixels, with its standard deviation.
@@ -36,6 +37,7 @@ struct Refinement {
   ImageShift shift;
   /// How the third of the scan that was held out fits the rest.
   HeldOutComparison held_out;
+  std::optional<EpochOffset> epoch_offset;  ///< nullopt = too little was seen in two NUC epochs.
   std::size_t frames = 0;  ///< Thermal frames that were compared, those held out too.
   int textured_points = 0, points = 0;
 

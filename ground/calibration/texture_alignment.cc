@@ -23,10 +23,22 @@ constexpr double kHalfBaseline_s = 0.015;
 // temperature: next to nothing up to 40 degrees, then ever faster (Fresnel). Its size is fitted at
 // each point, unless angles hardly differ.
 constexpr double kRefractiveIndex = 1.5;
+// Seen at angles that make more of a difference, a place has another apparent temperature: at 300
+// kelvin above its surroundings, by a kelvin.
+constexpr double kMaxReflectivityChange = 0.003;
 // A blur wider than this hides everything.
 constexpr double kMaxBlur_px = 20.0;
 constexpr double kMinDepth_m = 0.05;
 constexpr std::size_t kPointsPerTask = 128;
+
+/// How much later than its frame's stamp the pixel of a point is read, seconds. `p_thermal` has
+/// z > 0.
+double ReadAfterStamp(const ScanViews& views, const CameraModel& camera,
+                      const Eigen::Vector3d& p_thermal) {
+  if (views.row_readout_s == 0.0) return 0.0;
+  const double row = ProjectNormalized(camera, p_thermal.head<2>() / p_thermal.z()).y();
+  return views.row_readout_s * (row - 0.5 * (camera.height - 1));
+}
 
 /// Two unit vectors along a surface with the normal `n`.
 Eigen::Matrix<double, 3, 2> TangentsOf(const Eigen::Vector3d& n) {
@@ -97,9 +109,9 @@ TextureAlignment::TextureAlignment(const ScanViews& views, ThreadPool& pool)
   }
 }
 
-void TextureAlignment::BlurImages(double sigma_px) {
-  is_blurred_ = sigma_px > 0.0;
-  if (!is_blurred_) return;
+void TextureAlignment::PrepareImages(const SceneInfluence& influence, double sigma_px) {
+  influence_ = influence;
+  images_.assign(views_.frames.size(), {});
   const std::vector<double> distances_m = Distances();
   std::vector<double> known_m;
   std::copy_if(distances_m.begin(), distances_m.end(), std::back_inserter(known_m),
@@ -107,13 +119,15 @@ void TextureAlignment::BlurImages(double sigma_px) {
   if (known_m.empty()) return;
   std::nth_element(known_m.begin(), known_m.begin() + known_m.size() / 2, known_m.end());
   const double usual_m = known_m[known_m.size() / 2];
-  blurred_.resize(views_.frames.size());
   pool_.ParallelFor(static_cast<int>(views_.frames.size()), [&](int index) {
     const auto i = static_cast<std::size_t>(index);
     if (!(distances_m[i] > 0.0)) return;
-    blurred_[i] = BlurKnownPixels(
-        *views_.frames[i].temperature_raw,
-        GaussianWeights(std::min(kMaxBlur_px, sigma_px * usual_m / distances_m[i])));
+    const StampedThermal& frame = views_.frames[i];
+    images_[i] = FindOwnTemperatures(*frame.temperature_raw, frame.scale, influence);
+    if (sigma_px == 0.0) return;
+    Image<std::uint16_t>& image = images_[i].temperature_raw;
+    image = BlurKnownPixels(
+        image, GaussianWeights(std::min(kMaxBlur_px, sigma_px * usual_m / distances_m[i])));
   });
 }
 
@@ -163,16 +177,24 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
   const Eigen::Matrix<double, 3, 2> tangents = TangentsOf(point.n_world);
   const Eigen::Matrix<double, 3, TrajectoryDrift::kPerKnot> by_knot = drift.ByKnot(point.p_world);
   const Eigen::Matrix3d& R_thermal_depth = placement.T_thermal_depth.linear();
+  const Eigen::Vector2d change_of_influence(
+      placement.influence.near_fraction - influence_.near_fraction,
+      placement.influence.total_fraction - influence_.total_fraction);
   for (const std::uint32_t i : frames) {
     const FrameGeometry& geometry = geometries[i];
-    if (!geometry.is_known || (is_blurred_ && blurred_[i].width() == 0)) continue;
-    const Eigen::Vector3d p_depth = geometry.T_depth_world * point.p_world;
-    const Eigen::Vector3d turned = R_thermal_depth * p_depth;
+    const OwnTemperatures& image = images_[i];
+    if (!geometry.is_known || image.temperature_raw.width() == 0) continue;
+    const Eigen::Vector3d at_stamp = geometry.T_thermal_world * point.p_world;
+    if (at_stamp.z() < kMinDepth_m) continue;
+    const Eigen::Vector3d velocity_depth =
+        geometry.velocity_depth_world * point.p_world.homogeneous();
+    const Eigen::Vector3d turned =
+        R_thermal_depth * (geometry.T_depth_world * point.p_world +
+                           ReadAfterStamp(views_, placement.camera, at_stamp) * velocity_depth);
     const Eigen::Vector3d p_thermal = turned + placement.T_thermal_depth.translation();
-    if (p_thermal.z() < kMinDepth_m) continue;
     const ProjectionDerivatives projection = ProjectWithDerivatives(placement.camera, p_thermal);
-    const auto seen = SampleThermal(is_blurred_ ? blurred_[i] : *views_.frames[i].temperature_raw,
-                                    views_.frames[i].scale, projection.pixel);
+    const auto seen =
+        SampleThermal(image.temperature_raw, views_.frames[i].scale, projection.pixel);
     if (!seen) continue;
     const Eigen::Matrix<double, 2, 3> by_world_point =
         projection.by_point * geometry.T_thermal_world.linear();
@@ -180,12 +202,12 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
     Eigen::Matrix<double, 2, kPlacementParameters> by_correction;
     by_correction.block<2, 3>(0, kRotationX) = projection.by_point * DerivativeByRotation(turned);
     by_correction.block<2, 3>(0, kTranslationX) = projection.by_point;
-    by_correction.col(kDelay) =
-        projection.by_point *
-        (R_thermal_depth * (geometry.velocity_depth_world * point.p_world.homogeneous()));
+    by_correction.col(kDelay) = projection.by_point * (R_thermal_depth * velocity_depth);
     by_correction.block<2, 2>(0, kPrincipalX) = Eigen::Matrix2d::Identity();
+    by_correction.rightCols<2>().setZero();
     PointSample sample;
-    sample.kelvin = seen->kelvin;
+    sample.by_influence = image.ByFractions(projection.pixel);
+    sample.kelvin = seen->kelvin + sample.by_influence.dot(change_of_influence);
     sample.gradient_k_m = pixels_per_metre.transpose() * seen->gradient_k_px;
     const Eigen::Matrix2d metres_per_pixel = pixels_per_metre.inverse();
     sample.shift = metres_per_pixel * by_correction;
@@ -249,6 +271,31 @@ HeldOutComparison TextureAlignment::CompareHeldOut(const ThermalPlacement& befor
   }
   if (weights == 0.0) return {};
   return {std::sqrt(a_squares / weights), std::sqrt(b_squares / weights), b_loss < a_loss};
+}
+
+std::vector<PlaceDifference> TextureAlignment::CompareEpochs(const ThermalPlacement& placement,
+                                                             std::size_t points) const {
+  points = std::min(points, views_.points.size());
+  const TrajectoryDrift none;
+  const std::vector<FrameGeometry> geometries = Geometries(placement, none);
+  std::vector<std::vector<PlaceDifference>> by_point(points);
+  pool_.ParallelFor(static_cast<int>(points), [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    std::vector<PointSample> samples;
+    Gather(views_.points[i], showing_[i], placement, none, geometries, samples);
+    const std::vector<PointEpoch> epochs = EpochsOf(samples);
+    for (std::size_t k = 1; k < epochs.size(); ++k) {
+      const PointEpoch& before = epochs[k - 1];
+      const PointEpoch& after = epochs[k];
+      if (std::abs(after.reflectivity - before.reflectivity) > kMaxReflectivityChange) continue;
+      by_point[i].push_back({samples[before.begin].epoch, samples[after.begin].epoch,
+                             views_.points[i].p_world, after.kelvin - before.kelvin});
+    }
+  });
+  std::vector<PlaceDifference> differences;
+  for (const std::vector<PlaceDifference>& places : by_point)
+    differences.insert(differences.end(), places.begin(), places.end());
+  return differences;
 }
 
 AlignmentEquations TextureAlignment::Linearize(const ThermalPlacement& placement,

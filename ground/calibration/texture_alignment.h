@@ -7,6 +7,8 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
 #include "ground/calibration/alignment_equations.h"
+#include "ground/calibration/epoch_offset.h"
+#include "ground/calibration/own_temperatures.h"
 #include "ground/calibration/point_samples.h"
 #include "ground/calibration/texture_consistency.h"
 #include "ground/calibration/thermal_placement.h"
@@ -30,10 +32,12 @@ class TextureAlignment {
   /// `views` and `pool` must outlive it. Every frame's `visible` is filled.
   TextureAlignment(const ScanViews& views, ThreadPool& pool);
 
-  /// Compares images blurred by a Gaussian from here on: of this standard deviation at the usual
-  /// distance, so that it is as wide on the surface from any distance. Otherwise nearness would
-  /// sharpen edges, which passes for a misalignment.
-  void BlurImages(double sigma_px);
+  /// Before anything else: takes the scene's influence out of the images, and blurs them by a
+  /// Gaussian of this standard deviation at the usual distance, so that it is as wide on the
+  /// surface from any distance. Otherwise nearness would sharpen edges, which passes for a
+  /// misalignment. Placements with another influence are compared by how temperatures change with
+  /// it.
+  void PrepareImages(const SceneInfluence& influence, double sigma_px);
 
   /// By the first `points` of the points; by the drift's values too if it has any.
   AlignmentEquations Linearize(const ThermalPlacement& placement, const TrajectoryDrift& drift,
@@ -43,6 +47,10 @@ class TextureAlignment {
   /// placements, each weighed alike at both.
   HeldOutComparison CompareHeldOut(const ThermalPlacement& before, const ThermalPlacement& after,
                                    std::size_t points) const;
+
+  /// How the first `points` of the points differ from one NUC epoch that shows them to the next.
+  std::vector<PlaceDifference> CompareEpochs(const ThermalPlacement& placement,
+                                             std::size_t points) const;
 
  private:
   struct FrameGeometry;
@@ -63,8 +71,8 @@ class TextureAlignment {
   std::vector<int> part_of_frame_;
   std::vector<bool> held_out_;                       ///< By frame.
   std::vector<std::vector<std::uint32_t>> showing_;  ///< By point: frames that show it.
-  bool is_blurred_ = false;
-  std::vector<Image<std::uint16_t>> blurred_;  ///< By frame.
+  SceneInfluence influence_;                         ///< Taken out of `images_`.
+  std::vector<OwnTemperatures> images_;              ///< By frame; empty if it shows no point.
 };
 
 }  // namespace isotherm

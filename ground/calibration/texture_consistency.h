@@ -43,6 +43,7 @@ struct ScanViews {
   std::vector<StampedPose> trajectory;  ///< By time.
   std::vector<TexturePoint> points;  ///< In random order, so that any number of the first will do.
   std::vector<StampedThermal> frames;  ///< By time.
+  double row_readout_s = 0.0;          ///< As in ThermalSensorModel; stamps are of the middle row.
   double pose_drift_m = 0.0;  ///< Drift of the poses within seconds, one sigma along each axis.
 };
 

@@ -14,6 +14,8 @@ ThermalPlacement Corrected(const ThermalPlacement& placement, const PlacementVec
   corrected.delay_s += correction[kDelay];
   corrected.camera.cx += correction[kPrincipalX];
   corrected.camera.cy += correction[kPrincipalY];
+  corrected.influence.near_fraction += correction[kNearInfluence];
+  corrected.influence.total_fraction += correction[kTotalInfluence];
   return corrected;
 }
 
@@ -27,6 +29,8 @@ PlacementVector CorrectionBetween(const ThermalPlacement& from, const ThermalPla
   correction[kDelay] = to.delay_s - from.delay_s;
   correction[kPrincipalX] = to.camera.cx - from.camera.cx;
   correction[kPrincipalY] = to.camera.cy - from.camera.cy;
+  correction[kNearInfluence] = to.influence.near_fraction - from.influence.near_fraction;
+  correction[kTotalInfluence] = to.influence.total_fraction - from.influence.total_fraction;
   return correction;
 }
 

@@ -6,19 +6,23 @@
 
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
+#include "common/rig/sensor_models.h"
 
 namespace isotherm {
 
-/// The values that a scan may correct: where the thermal camera sits, how it looks, and when.
+/// The values that a scan may correct: where the thermal camera sits, how it looks, and when, and
+/// what the radiation on other pixels adds to each one.
 struct ThermalPlacement {
   CameraModel camera;  ///< As images come, with distortion.
   RigidTransform T_thermal_depth = RigidTransform::Identity();
-  double delay_s = 0.0;  ///< To be added to the stamps that the recording has.
+  double delay_s = 0.0;      ///< To be added to the stamps that the recording has.
+  SceneInfluence influence;  ///< Images are compared without it.
 };
 
 /// Numbers the corrections of a placement: a rotation vector in thermal coordinates (radians,
 /// turned after the placement's own rotation), a shift of the translation (metres), a delay
-/// (seconds) and a shift of the principal point (pixels).
+/// (seconds), a shift of the principal point (pixels) and changes of the fractions of the scene's
+/// influence.
 enum PlacementParameter : std::uint8_t {
   kRotationX,
   kRotationY,
@@ -29,10 +33,13 @@ enum PlacementParameter : std::uint8_t {
   kDelay,
   kPrincipalX,
   kPrincipalY,
+  kNearInfluence,
+  kTotalInfluence,
 };
-inline constexpr int kPlacementParameters = 9;
+inline constexpr int kPlacementParameters = 11;
 /// Their names in files, in their order.
-inline constexpr std::string_view kPlacementParameterNames = "rx ry rz tx ty tz delay cx cy";
+inline constexpr std::string_view kPlacementParameterNames =
+    "rx ry rz tx ty tz delay cx cy near total";
 
 using PlacementVector = Eigen::Matrix<double, kPlacementParameters, 1>;
 using PlacementMatrix = Eigen::Matrix<double, kPlacementParameters, kPlacementParameters>;

@@ -20,12 +20,12 @@ const CameraModel kLens{.width = 382,
 ThermalPlacement SomePlacement() {
   Eigen::Matrix<double, 6, 1> twist;
   twist << 0.05, 0.03, -0.01, 0.02, -0.4, 0.3;
-  return {kLens, TransformFromTwist(twist), 0.01};
+  return {kLens, TransformFromTwist(twist), 0.01, {.near_fraction = 0.04}};
 }
 
 TEST(ThermalPlacementTest, CorrectionLeadsFromOneToTheOther) {
   PlacementVector correction;
-  correction << 0.1, -0.2, 0.05, 0.01, -0.02, 0.03, -0.004, 3.0, -2.0;
+  correction << 0.1, -0.2, 0.05, 0.01, -0.02, 0.03, -0.004, 3.0, -2.0, -0.01, 0.02;
   const ThermalPlacement from = SomePlacement();
   const ThermalPlacement to = Corrected(from, correction);
   EXPECT_TRUE(CorrectionBetween(from, to).isApprox(correction, 1e-9));

@@ -10,7 +10,7 @@ ThermalSelection::ThermalSelection(std::size_t max_frames) : max_frames_(max_fra
   CHECK(max_frames >= 2);
 }
 
-void ThermalSelection::Add(ThermalFramePtr frame, double speed) {
+void ThermalSelection::Add(StampedThermal frame, double speed) {
   if (in_bucket_ < stride_ && !kept_.empty()) {
     ++in_bucket_;
     if (speed > kept_.back().speed) kept_.back() = {std::move(frame), speed};
@@ -39,8 +39,8 @@ void ThermalSelection::Halve() {
   stride_ *= 2;
 }
 
-std::vector<ThermalFramePtr> ThermalSelection::frames() const {
-  std::vector<ThermalFramePtr> frames;
+std::vector<StampedThermal> ThermalSelection::frames() const {
+  std::vector<StampedThermal> frames;
   for (const Kept& kept : kept_) frames.push_back(kept.frame);
   return frames;
 }

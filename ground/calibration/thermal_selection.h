@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/frame/frame.h"
+#include "ground/calibration/texture_consistency.h"
 
 namespace isotherm {
 
-/// References to a bounded number of a scan's thermal frames, spread evenly over it however long it
+/// References to a bounded number of a scan's thermal images, spread evenly over it however long it
 /// becomes. Of frames that stand for each other the one at the fastest motion is kept: it says most
 /// about when it was taken. Thread-compatible.
 class ThermalSelection {
@@ -17,15 +17,15 @@ class ThermalSelection {
 
   /// Takes the frames in order of capture time. `speed` is that of the image, in any unit, the same
   /// for all.
-  void Add(ThermalFramePtr frame, double speed);
+  void Add(StampedThermal frame, double speed);
 
   /// Returns the selected frames by time, not more than `max_frames`.
-  std::vector<ThermalFramePtr> frames() const;
+  std::vector<StampedThermal> frames() const;
 
  private:
   /// Holds a frame and how fast the image moved in it.
   struct Kept {
-    ThermalFramePtr frame;
+    StampedThermal frame;
     double speed = 0.0;
   };
 

@@ -2,23 +2,28 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
+#include <cstdint>
+#include <vector>
 
 namespace isotherm {
 namespace {
 
-ThermalFramePtr Frame(std::uint64_t number) {
-  auto frame = std::make_shared<ThermalFrame>();
-  frame->header.frame_number = number;
+/// The number takes the place of the time.
+StampedThermal Frame(std::uint64_t number) {
+  StampedThermal frame;
+  frame.time = CaptureTime(Nanoseconds(number));
   return frame;
+}
+
+std::uint64_t NumberOf(const StampedThermal& frame) {
+  return static_cast<std::uint64_t>(frame.time.time_since_epoch().count());
 }
 
 TEST(ThermalSelectionTest, AShortScanIsKeptWhole) {
   ThermalSelection selection(10);
   for (std::uint64_t i = 0; i < 10; ++i) selection.Add(Frame(i), 1.0);
   ASSERT_EQ(selection.frames().size(), 10U);
-  for (std::uint64_t i = 0; i < 10; ++i) EXPECT_EQ(selection.frames()[i]->header.frame_number, i);
+  for (std::uint64_t i = 0; i < 10; ++i) EXPECT_EQ(NumberOf(selection.frames()[i]), i);
 }
 
 TEST(ThermalSelectionTest, ALongScanIsCoveredEvenlyWithABoundedNumber) {
@@ -26,16 +31,16 @@ TEST(ThermalSelectionTest, ALongScanIsCoveredEvenlyWithABoundedNumber) {
     for (const std::uint64_t length : {11U, 25U, 100U, 1000U, 7777U}) {
       ThermalSelection selection(most);
       for (std::uint64_t i = 0; i < length; ++i) selection.Add(Frame(i), 1.0);
-      const std::vector<ThermalFramePtr> frames = selection.frames();
+      const std::vector<StampedThermal> frames = selection.frames();
       ASSERT_LE(frames.size(), most);
       ASSERT_GE(frames.size(), most / 2);
       // Of equally fast ones the first stays, so gaps are powers of two, all the same.
-      const std::uint64_t gap = frames[1]->header.frame_number - frames[0]->header.frame_number;
-      EXPECT_EQ(frames.front()->header.frame_number, 0U);
+      const std::uint64_t gap = NumberOf(frames[1]) - NumberOf(frames[0]);
+      EXPECT_EQ(NumberOf(frames.front()), 0U);
       for (std::size_t i = 1; i < frames.size(); ++i) {
-        EXPECT_EQ(frames[i]->header.frame_number, i * gap) << most << " of " << length;
+        EXPECT_EQ(NumberOf(frames[i]), i * gap) << most << " of " << length;
       }
-      EXPECT_LE(length - frames.back()->header.frame_number, 2 * gap);
+      EXPECT_LE(length - NumberOf(frames.back()), 2 * gap);
     }
   }
 }
@@ -47,8 +52,8 @@ TEST(ThermalSelectionTest, OfNeighboursTheFasterIsKept) {
   for (std::uint64_t i = 0; i < kFrames; ++i)
     selection.Add(Frame(i), i % 16 == 5 ? static_cast<double>(i) : 0.0);
   std::size_t moving = 0;
-  for (const ThermalFramePtr& frame : selection.frames())
-    moving += frame->header.frame_number % 16 == 5 ? 1 : 0;
+  for (const StampedThermal& frame : selection.frames())
+    moving += NumberOf(frame) % 16 == 5 ? 1 : 0;
   EXPECT_EQ(moving, kFrames / 16);
 }
 

@@ -20,6 +20,21 @@ TrajectoryDrift::TrajectoryDrift(const ScanViews& views, double spacing_s, int m
   values_ = Eigen::VectorXd::Zero(kPerKnot * (intervals + 1));
 }
 
+Eigen::MatrixXd TrajectoryDrift::PriorFactor(double sigma_m, double sigma_rad) const {
+  const int knots = size() / kPerKnot;
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(size(), size());
+  // Cholesky's factor of the covariance sigma^2 alike^|i - j| in closed form (AR(1)).
+  const double alike = std::exp(-spacing_s_ / kDriftMemory_s);
+  for (int column = 0; column < knots; ++column) {
+    double share = column == 0 ? 1.0 : std::sqrt(1.0 - alike * alike);
+    for (int row = column; row < knots; ++row, share *= alike) {
+      for (int i = 0; i < kPerKnot; ++i)
+        factor(kPerKnot * row + i, kPerKnot * column + i) = share * (i < 3 ? sigma_m : sigma_rad);
+    }
+  }
+  return factor;
+}
+
 TrajectoryDrift::Place TrajectoryDrift::At(CaptureTime time) const {
   const int intervals = size() / kPerKnot - 1;
   if (intervals < 1) return {};

@@ -26,6 +26,11 @@ class TrajectoryDrift {
   const Eigen::VectorXd& values() const { return values_; }
   void Add(const Eigen::VectorXd& change) { values_ += change; }
 
+  /// How far its values are off by: each with this standard deviation (metres, radians), the same
+  /// value of two knots alike by as much as poses remember in between (kDriftMemory_s). Returns the
+  /// lower triangular matrix that makes such values of independent standard normal ones.
+  Eigen::MatrixXd PriorFactor(double sigma_m, double sigma_rad) const;
+
   /// Where a time lies between two knots.
   struct Place {
     int first = 0;          ///< The first of the kPerKnot values of the knot before.

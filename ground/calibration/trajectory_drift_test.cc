@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "ground/calibration/image_motion.h"
+
 namespace isotherm {
 namespace {
 
@@ -42,6 +46,22 @@ TEST(TrajectoryDriftTest, DerivativesAreThoseOfDifferences) {
     drift.Add(values);
     const Eigen::Vector3d moved = drift.MotionAt(drift.At(CaptureTime())) * p_world;
     EXPECT_TRUE(slope.isApprox((moved - p_world) / kStep, 1e-5)) << "value " << i;
+  }
+}
+
+TEST(TrajectoryDriftTest, KnotsAreOffAlikeByAsMuchAsPosesRemember) {
+  const TrajectoryDrift drift(ThreeSeconds(), 1.0, 24);
+  const Eigen::MatrixXd factor = drift.PriorFactor(0.2, 0.03);
+  const Eigen::MatrixXd covariance = factor * factor.transpose();
+  constexpr int kTurn = 4;  // About y.
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      const double alike = std::exp(-std::abs(a - b) / kDriftMemory_s);
+      const int row = TrajectoryDrift::kPerKnot * a, column = TrajectoryDrift::kPerKnot * b;
+      EXPECT_NEAR(covariance(row, column), 0.04 * alike, 1e-12);
+      EXPECT_NEAR(covariance(row + kTurn, column + kTurn), 0.0009 * alike, 1e-12);
+      EXPECT_NEAR(covariance(row, column + 1), 0.0, 1e-12);
+    }
   }
 }
 

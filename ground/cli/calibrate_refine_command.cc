@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
 #include "common/rig/rig_calibration_file.h"
+#include "ground/calibration/calibration_check.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/frame_rendering.h"
@@ -29,9 +31,10 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kRefineFooter =
-    R"(Finds where the thermal camera sits and how it looks (pose to the depth camera, principal point, delay)
-from any scan of something with warm and cold parts: the depth camera is tracked, and the thermal images must
-agree about each point of the surface. No target is needed. A third of the scan is held out and must agree
+    R"(Finds where the thermal camera sits and how it looks (pose to the depth camera, principal point, delay), and
+what the radiation on other pixels adds to each one (thermal_sensor.scene_influence), from any scan of something
+with warm and cold parts: the depth camera is tracked, and the thermal images must agree about each point of the
+surface. No target is needed. A third of the scan is held out and must agree
 better afterwards.
 
 The calibration at hand is where the search begins, and what stays where the scan says nothing: --prior-...
@@ -48,8 +51,9 @@ Examples:
   isotherm calibrate refine scan.mcap --rig rig.textproto --prior-principal-point 0)";
 
 constexpr const char* kCheckFooter =
-    R"(Says, before a job, whether pose and delay of the thermal camera are still what the calibration says, from
-half a minute of scanning something with warm and cold parts: one line each. Exit status 0: both fit;
+    R"(Says, before a job, whether pose, delay and scene influence of the thermal camera are still what the calibration
+says, from half a minute of scanning something with warm and cold parts: one line each. A fourth tells how
+temperatures differ from one NUC to another, which calibrating does not help against. Exit status 0: all fit;
 1: something has moved; 2: this scan cannot tell (standard error says why).
 
 Examples:
@@ -62,6 +66,7 @@ constexpr int kMoved = 1, kCannotTell = 2;
 struct RefineArguments {
   std::string recording, rig, output, render, json;
   double rotation_deg = 1.0, translation_mm = 10.0, delay_ms = 20.0, principal_point_px = 5.0;
+  double influence_percent = 5.0;
   ConfigurationArguments configuration;
   bool apply = false;
   int threads = 0;
@@ -88,7 +93,7 @@ class RefineRun {
     }
     input.prior = {arguments_.rotation_deg * std::numbers::pi / 180.0,
                    1e-3 * arguments_.translation_mm, 1e-3 * arguments_.delay_ms,
-                   arguments_.principal_point_px};
+                   arguments_.principal_point_px, 0.01 * arguments_.influence_percent};
     input.with_rendering = !arguments_.render.empty();
     Result<RecordingRefinement> refined = [&] {
       ProgressBar bar("calibrating", 0, "");
@@ -102,12 +107,12 @@ class RefineRun {
       return Fail(status_);
     }
     refined_ = std::move(*refined);
-    verdict_ = Assess(refined_, options_.delay_check().expert().max_shift_s());
+    verdict_ = Assess(refined_.refinement, LimitsOf(options_.calibration_check()));
     return std::nullopt;
   }
 
   const RecordingRefinement& refined() const { return refined_; }
-  const RefinementVerdict& verdict() const { return verdict_; }
+  const CalibrationVerdict& verdict() const { return verdict_; }
   /// Why there is no result.
   const Status& status() const { return status_; }
 
@@ -115,18 +120,32 @@ class RefineRun {
   const RefineArguments& arguments_;
   GroundOptions options_;
   RecordingRefinement refined_;
-  RefinementVerdict verdict_;
+  CalibrationVerdict verdict_;
   Status status_;
 };
 
+void SetInfluence(const Refinement& refinement, RigCalibration& rig) {
+  SceneInfluenceProperties& influence = *rig.mutable_thermal_sensor()->mutable_scene_influence();
+  const SceneInfluence& found = refinement.after.influence;
+  // Less than none is chance.
+  const auto within = [](double fraction) {
+    return std::clamp(fraction, 0.0, SceneInfluence::kMaxFraction);
+  };
+  influence.set_near_fraction(within(found.near_fraction));
+  influence.set_near_sigma_px(found.near_sigma_px);
+  influence.set_total_fraction(within(found.total_fraction));
+}
+
 /// Changes what was refined, and says how.
 void SetRefined(const RefineArguments& arguments, const RecordingRefinement& refined,
-                RigCalibration& rig) {
+                const CalibrationVerdict& verdict, RigCalibration& rig) {
   const Refinement& r = refined.refinement;
   rig.mutable_thermal()->set_cx(r.after.camera.cx);
   rig.mutable_thermal()->set_cy(r.after.camera.cy);
   *rig.mutable_t_thermal_depth() = ToProto(r.after.T_thermal_depth);
   rig.set_thermal_delay_s(refined.DelayAfter());
+  // One that is as good as the calibrated one leaves what the file says.
+  if (verdict.influence == CheckVerdict::kMoved) SetInfluence(r, rig);
   CalibrationRecord record;
   record.set_date(Today());
   record.set_method(fmt::format("{}, calibrate refine", SoftwareName()));
@@ -143,7 +162,8 @@ void SetRefined(const RefineArguments& arguments, const RecordingRefinement& ref
   *rig.mutable_pose_calibration() = record;
 }
 
-Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined) {
+Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined,
+                const CalibrationVerdict& verdict) {
   const std::string& path = arguments.apply ? arguments.rig : arguments.output;
   std::error_code error;
   const bool was_there = std::filesystem::exists(path, error);
@@ -153,7 +173,7 @@ Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& ref
     whole.Clear();
     ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.rig, whole));
   }
-  SetRefined(arguments, refined, whole);
+  SetRefined(arguments, refined, verdict, whole);
   ISOTHERM_RETURN_IF_ERROR(EditRigFile(path, [&](RigCalibration& rig) {
     rig = whole;
     return OkStatus();
@@ -193,7 +213,7 @@ int RunRefine(const RefineArguments& arguments) {
     fmt::print("nothing is written: --apply changes the file of --rig, --output writes another\n");
     return 0;
   }
-  const Status written = WriteRig(arguments, run.refined());
+  const Status written = WriteRig(arguments, run.refined(), run.verdict());
   return written.ok() ? 0 : Fail(written);
 }
 
@@ -207,9 +227,7 @@ int RunCheck(const RefineArguments& arguments) {
     fmt::print("see `isotherm calibrate refine {}`\n", arguments.recording);
     return kMoved;
   }
-  const bool both_told = run.verdict().geometry == DelayVerdict::kAgrees &&
-                         run.verdict().delay == DelayVerdict::kAgrees;
-  return both_told ? 0 : kCannotTell;
+  return run.verdict().Agrees() ? 0 : kCannotTell;
 }
 
 void AddPriorArguments(CLI::App& command, RefineArguments& arguments) {
@@ -232,6 +250,11 @@ void AddPriorArguments(CLI::App& command, RefineArguments& arguments) {
       .add_option("--prior-principal-point", arguments.principal_point_px,
                   "The principal point may be off by this, pixels; 0 keeps it")
       ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  command
+      .add_option("--prior-influence", arguments.influence_percent,
+                  "The scene's influence may be off by this, percent; 0 keeps it")
+      ->check(CLI::Range(0.0, 25.0))
       ->capture_default_str();
 }
 

@@ -11,7 +11,7 @@
 #include "common/dataset/text_lines.h"
 #include "common/options/edit_field.h"
 #include "common/rig/rig_calibration.h"
-#include "ground/calibration/delay_check.h"
+#include "ground/calibration/calibration_verdict.h"
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/image_motion.h"
 #include "ground/cli/command.h"
@@ -30,7 +30,7 @@ surface at the poses that a delay puts them at, and the delay is sought at which
 should show a surface with clear thermal contrast for 10 s or more while the rig is moved back and forth.
 Parts of the scan are resampled to say how certain the result is; to their spread comes what drifting poses
 can be taken for, which reversals average out. Nothing is written if parts spread by more than --max-sigma, if
-the calibration's delay agrees with the result (delay_check.expert.max_shift_s), or if nearly any would.
+the calibration's delay agrees with the result (calibration_check.expert.max_shift_s), or if nearly any would.
 
 --rig names the calibration that the scan was made with. Only --apply changes it: that one number, comments
 and all else stay, and the file as it was is kept beside it (FILE.bak).
@@ -165,15 +165,15 @@ int Run(const CalibrateTimeArguments& arguments) {
   Print(*scan, *estimate, *change);
   DelayEstimate moved_by = *estimate;
   moved_by.delay_s = change->after_s - change->before_s;
-  const DelayVerdict verdict = Assess(moved_by, options.delay_check().expert().max_shift_s());
-  if (verdict == DelayVerdict::kNotAssessed) {
+  const CheckVerdict verdict = Assess(moved_by, options.calibration_check().expert().max_shift_s());
+  if (verdict == CheckVerdict::kNotAssessed) {
     fmt::print("too uncertain to agree with the calibration or not: nothing to write\n");
     return 0;
   }
-  if (verdict != DelayVerdict::kMoved) {
+  if (verdict != CheckVerdict::kMoved) {
     fmt::print(
         "agrees with the calibration (within {:g} ms or its uncertainty): nothing to write\n",
-        1e3 * options.delay_check().expert().max_shift_s());
+        1e3 * options.calibration_check().expert().max_shift_s());
     return 0;
   }
   if (arguments.output.empty() && !arguments.apply) {

@@ -13,11 +13,6 @@ namespace isotherm {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-// Half a pixel is what the fusion takes as a registration error; and what is wrong alike in the
-// whole scan, as delays in DelayCheck.
-constexpr double kMaxShift_px = 0.5;
-constexpr double kMaxSigmaToAgree_px = 1.0;
-constexpr double kSigmas = 3.0;
 constexpr int kGap_px = 8;
 
 /// One value of a calibration, as it is shown.
@@ -59,25 +54,14 @@ std::vector<ShownValue> ShownValues(const RecordingRefinement& refined) {
   add(kDelay, "delay", "ms", 1e3, refined.DelayBefore(), refined.DelayAfter());
   add(kPrincipalX, "principal point x", "px", 1.0, r.before.camera.cx, r.after.camera.cx);
   add(kPrincipalY, "principal point y", "px", 1.0, r.before.camera.cy, r.after.camera.cy);
+  add(kNearInfluence, "near influence", "%", 100.0, r.before.influence.near_fraction,
+      r.after.influence.near_fraction);
+  add(kTotalInfluence, "total influence", "%", 100.0, r.before.influence.total_fraction,
+      r.after.influence.total_fraction);
   return values;
 }
 
 }  // namespace
-
-RefinementVerdict Assess(const RecordingRefinement& refined, double max_shift_s) {
-  const Refinement& r = refined.refinement;
-  RefinementVerdict verdict;
-  if (r.shift.rms_px > std::max(kMaxShift_px, kSigmas * r.shift.sigma_px)) {
-    verdict.geometry = r.held_out.improves ? DelayVerdict::kMoved : DelayVerdict::kNotAssessed;
-  } else if (r.shift.sigma_px <= kMaxSigmaToAgree_px) {
-    verdict.geometry = DelayVerdict::kAgrees;
-  }
-  verdict.delay =
-      Assess({.delay_s = r.correction[kDelay], .sigma_s = r.Sigma(kDelay)}, max_shift_s);
-  if (verdict.delay == DelayVerdict::kMoved && !r.held_out.improves)
-    verdict.delay = DelayVerdict::kNotAssessed;
-  return verdict;
-}
 
 std::string RefinementText(const RecordingRefinement& refined) {
   const Refinement& r = refined.refinement;
@@ -99,29 +83,18 @@ std::string RefinementText(const RecordingRefinement& refined) {
   return text;
 }
 
-std::string CheckText(const RecordingRefinement& refined, const RefinementVerdict& verdict) {
+std::string CheckText(const RecordingRefinement& refined, const CalibrationVerdict& verdict) {
   const Refinement& r = refined.refinement;
-  const auto line = [&](const char* name, DelayVerdict part, const std::string& figures) {
-    const char* word = part == DelayVerdict::kMoved    ? "moved by"
-                       : part == DelayVerdict::kAgrees ? "ok, within"
-                                                       : "cannot tell here:";
-    const bool is_refuted =
-        part == DelayVerdict::kNotAssessed && r.observed_directions > 0 && !r.held_out.improves;
-    return fmt::format("{:<10}{} {}{}\n", name, word, figures,
-                       is_refuted ? ", but images that were held out do not agree better" : "");
-  };
-  return line("pose", verdict.geometry,
-              fmt::format("{:.2f} px in the thermal image, uncertain by {:.2f} px", r.shift.rms_px,
-                          r.shift.sigma_px)) +
-         line("delay", verdict.delay,
-              fmt::format("{:+.1f} ms, uncertain by {:.1f} ms", 1e3 * r.correction[kDelay],
-                          1e3 * r.Sigma(kDelay)));
+  return fmt::format("{:<10}{}\n{:<10}{}\n{:<10}{}\n{:<10}{}\n", "pose",
+                     DescribePose(r, verdict.pose), "delay", DescribeDelay(r, verdict.delay),
+                     "influence", DescribeInfluence(r, verdict.influence), "offset",
+                     DescribeOffset(r, verdict.offset));
 }
 
-Json RefinementJson(const RecordingRefinement& refined, const RefinementVerdict& verdict) {
+Json RefinementJson(const RecordingRefinement& refined, const CalibrationVerdict& verdict) {
   const Refinement& r = refined.refinement;
   Json json;
-  json["pose"] = ToString(verdict.geometry);
+  json["pose"] = ToString(verdict.pose);
   json["delay"] = ToString(verdict.delay);
   for (const ShownValue& value : ShownValues(refined)) {
     json["values"].push_back(Json{{"name", value.name},
@@ -136,6 +109,12 @@ Json RefinementJson(const RecordingRefinement& refined, const RefinementVerdict&
   json["shift_sigma_px"] = r.shift.sigma_px;
   json["held_out_before_k"] = r.held_out.before_k;
   json["held_out_after_k"] = r.held_out.after_k;
+  json["influence"] = ToString(verdict.influence);
+  json["offset"] = ToString(verdict.offset);
+  if (r.epoch_offset) {
+    json["offset_k"] = r.epoch_offset->kelvin;
+    json["offset_sigma_k"] = r.epoch_offset->sigma_k;
+  }
   json["thermal_frames"] = r.frames;
   json["points"] = r.points;
   json["points_with_texture"] = r.textured_points;

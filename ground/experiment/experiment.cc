@@ -23,6 +23,9 @@ constexpr Experiment kExperiments[] = {
      "A target's holes tell lenses and poses, whatever the target's warp, and how certain they "
      "are.",
      &RunCalibrationExperiment},
+    {"calibration-check", "5.2.5",
+     "A scan of anything tells whether the thermal camera is still where it was calibrated to be.",
+     &RunCalibrationCheckExperiment},
     {"voxel-size", "fig. 6.3", "Large voxels lose detail, small ones are noisy.",
      &RunVoxelSizeExperiment},
     {"conditional-integration", "fig. 6.4",

@@ -92,6 +92,7 @@ Result<ExperimentReport> RunVoxelSizeExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunConditionalIntegrationExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunTimingExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunCalibrationExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunCalibrationCheckExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunSceneInfluenceExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunParallaxExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool);

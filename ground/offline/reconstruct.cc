@@ -14,7 +14,7 @@
 #include "common/doubts/plausibility_check.h"
 #include "common/recording/recording.h"
 #include "ground/assembler/assembler.h"
-#include "ground/calibration/delay_check.h"
+#include "ground/calibration/calibration_check.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/export/result_files.h"
 #include "ground/offline/finishing_pass.h"
@@ -30,7 +30,7 @@ namespace {
 
 /// Fractions of the progress; the rest is writing results.
 constexpr double kFramesFraction = 0.60, kMergeFraction = 0.05, kFinishingFraction = 0.25;
-constexpr double kDelayFraction = 0.05;
+constexpr double kCheckFraction = 0.05;
 /// Where both passes end.
 constexpr double kPassesFraction = kFramesFraction + kMergeFraction + kFinishingFraction;
 
@@ -58,7 +58,8 @@ class InlineDriver {
         thermal_delay_(FromSeconds(rig.thermal_delay_s)),
         pipeline_(pipeline),
         plausibility_(rig),
-        delay_check_(request.options.delay_check(), rig, CalibratedDelay(reader.info(), rig)),
+        calibration_check_(request.options.calibration_check(), rig,
+                           CalibratedDelay(reader.info(), rig)),
         assembler_(rig.thermal.has_value()) {}
 
   /// From here on, every so-many-th valid thermal frame is kept from the pipeline.
@@ -92,10 +93,10 @@ class InlineDriver {
     return FinishTemperatures();
   }
 
-  DelayReport CheckDelay() {
-    return delay_check_.Finish(pipeline_.model(), [this](double fraction) {
+  CalibrationCheckReport CheckCalibration() {
+    return calibration_check_.Finish(pipeline_.model(), [this](double fraction) {
       if (request_.progress)
-        request_.progress(kPassesFraction + kDelayFraction * fraction, "checking the delay");
+        request_.progress(kPassesFraction + kCheckFraction * fraction, "checking the calibration");
     });
   }
 
@@ -149,7 +150,7 @@ class InlineDriver {
       }
       pipeline_.ProcessThermal(thermal);
       // After the frame was fused: the check needs its pose.
-      delay_check_.Add(thermal, pipeline_.model());
+      calibration_check_.Add(thermal, pipeline_.model());
     }
   }
 
@@ -175,7 +176,7 @@ class InlineDriver {
   const Nanoseconds thermal_delay_;
   GroundPipeline& pipeline_;
   PlausibilityCheck plausibility_;
-  DelayCheck delay_check_;
+  CalibrationCheck calibration_check_;
   Assembler assembler_;
   int hold_out_every_ = 0;  ///< 0 = none.
   int valid_thermal_ = 0;
@@ -314,7 +315,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   if (Status status = driver.Run(); !status.ok()) return Err(status);
   if (request.stop.stop_requested()) return Err(Stopped());
   const ProcessorTimes used = ReadProcessorTimes() - before;
-  const DelayReport delay = driver.CheckDelay();
+  const CalibrationCheckReport calibration = driver.CheckCalibration();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
   Json stats = DescribeScan(pipeline.model(), options);
@@ -323,11 +324,12 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   stats["processor"] = DescribeProcessor(used, pipeline.model().trajectory);
   if (request.describe) request.describe(stats);
   const auto progress = [&](std::string_view what, double fraction) {
-    constexpr double kBefore = kPassesFraction + kDelayFraction;
+    constexpr double kBefore = kPassesFraction + kCheckFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);
   };
-  Result<WrittenScan> written = WriteScan(
-      pipeline.model(), options, {delay, driver.FindDoubts(), stats}, request.output_dir, progress);
+  Result<WrittenScan> written =
+      WriteScan(pipeline.model(), options, {calibration, driver.FindDoubts(), stats},
+                request.output_dir, progress);
   if (!written) return Err(written.error());
   const ScanCounts& counts = pipeline.model().counts;
   return ReconstructSummary{

@@ -9,6 +9,7 @@
 
 #include "common/recording/recording.h"
 #include "ground/calibration/part_of_progress.h"
+#include "ground/calibration/scan_refinement.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/calibration/texture_rendering.h"
 #include "ground/offline/calibration_scan.h"
@@ -20,8 +21,6 @@ namespace {
 
 // What tracking and refining take of the progress.
 constexpr double kTracked = 0.3, kRefined = 0.95;
-// As many as the finest comparison takes (RefinePlacement).
-constexpr std::size_t kSampledPoints = 30'000;
 
 Status CheckSerial(std::string_view name, const std::string& in_file, const std::string& recorded) {
   if (in_file.empty() || recorded.empty() || in_file == recorded) return OkStatus();
@@ -80,19 +79,12 @@ Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
   // A recording's own calibration says what is still to be added to its stamps.
   const ThermalPlacement before{*result.rig.thermal, *result.rig.T_thermal_depth,
                                 input.rig ? result.rig.thermal_delay_s - result.delay_in_stamps_s
-                                          : result.rig.thermal_delay_s};
+                                          : result.rig.thermal_delay_s,
+                                result.rig.thermal_sensor.scene_influence};
   const ScanModel model = tracked->model();
   ScanViews views;
-  const LookAgain look_again = [&](const ThermalPlacement& placement, double range_s,
-                                   const std::function<void(double)>& seen) {
-    views.thermal_camera = placement.camera;
-    views.T_thermal_depth = placement.T_thermal_depth;
-    views.delay_s = placement.delay_s;
-    views.frames = tracked->frames();
-    return AddSurface(model, kSampledPoints, range_s, views, seen);
-  };
-  Result<Refinement> refined = RefinePlacement(views, before, input.prior, look_again, model.pool,
-                                               PartOf(progress, kTracked, kRefined));
+  Result<Refinement> refined = RefineByScan(model, tracked->frames(), before, input.prior, views,
+                                            PartOf(progress, kTracked, kRefined));
   if (!refined) return Err(refined.error().WithContext(input.recording.string()));
   result.refinement = std::move(*refined);
   if (input.with_rendering) {

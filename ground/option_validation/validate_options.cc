@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "ground/calibration/delay_check.h"
+#include "ground/calibration/calibration_check.h"
 #include "ground/console/console_options.h"
 #include "ground/export/result_files.h"
 #include "ground/feedback/advice.h"
@@ -77,7 +77,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.interpretation()));
   check(Validate(options.live()));
   check(Validate(options.feedback()));
-  check(Validate(options.delay_check()));
+  check(Validate(options.calibration_check()));
   check(Validate(options.console()));
   if (options.threads() < 0 || options.threads() > 256) {
     check(InvalidArgument(

@@ -31,7 +31,7 @@ class PlayerTest : public ::testing::Test {
     VolumeOptions& volume = *options_.mutable_volume();
     volume = testing::SmallVolume();
     *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
-    options_.mutable_delay_check()->mutable_expert()->set_enabled(false);
+    options_.mutable_calibration_check()->mutable_expert()->set_enabled(false);
     options_.set_threads(1);
   }
 

@@ -108,20 +108,40 @@ void AddResultDoubts(const ScanModel& scan, const GroundOptions& options,
   doubts.insert(doubts.end(), more.begin(), more.end());
 }
 
-Json DescribeDelay(const DelayReport& delay) {
+Json DescribeDelay(const CalibrationCheckReport& report) {
+  const Refinement& r = *report.refinement;
+  const double calibrated_s = report.calibrated_delay_s.value_or(NAN);
+  return {{"verdict", ToString(report.verdict.delay)},
+          {"calibrated_ms", kMsPerS * calibrated_s},
+          {"estimated_ms", kMsPerS * (calibrated_s + r.correction[kDelay])},
+          {"off_by_ms", kMsPerS * r.correction[kDelay]},
+          {"sigma_ms", kMsPerS * r.Sigma(kDelay)}};
+}
+
+Json DescribeCalibration(const CalibrationCheckReport& report) {
   Json json;
-  json["verdict"] = ToString(delay.verdict);
-  if (!delay.reason.empty()) json["reason"] = delay.reason;
-  if (delay.verdict == DelayVerdict::kOff) return json;
-  const double calibrated_s = delay.calibrated_s.value_or(NAN);
-  json["calibrated_ms"] = kMsPerS * calibrated_s;
-  json["elapsed_s"] = delay.elapsed_s;
-  if (!delay.off_by) return json;
-  json["estimated_ms"] = kMsPerS * (calibrated_s + delay.off_by->delay_s);
-  json["off_by_ms"] = kMsPerS * delay.off_by->delay_s;
-  json["sigma_ms"] = kMsPerS * delay.off_by->sigma_s;
-  json["parts"] = delay.off_by->parts;
-  json["contrast"] = delay.off_by->contrast;
+  json["verdict"] = ToString(Overall(report));
+  if (!report.is_on) return json;
+  json["elapsed_s"] = report.elapsed_s;
+  if (!report.refinement) {
+    json["reason"] = report.reason;
+    return json;
+  }
+  const Refinement& r = *report.refinement;
+  json["pose"] = {{"verdict", ToString(report.verdict.pose)},
+                  {"off_by_px", r.shift.rms_px},
+                  {"sigma_px", r.shift.sigma_px}};
+  json["delay"] = DescribeDelay(report);
+  json["influence"] = {{"verdict", ToString(report.verdict.influence)},
+                       {"near_fraction", r.after.influence.near_fraction},
+                       {"total_fraction", r.after.influence.total_fraction}};
+  json["offset"] = {{"verdict", ToString(report.verdict.offset)}};
+  if (r.epoch_offset) {
+    json["offset"]["kelvin"] = r.epoch_offset->kelvin;
+    json["offset"]["sigma_k"] = r.epoch_offset->sigma_k;
+  }
+  json["thermal_frames"] = r.frames;
+  json["points_with_texture"] = r.textured_points;
   return json;
 }
 
@@ -254,7 +274,7 @@ Result<WrittenScan> WriteScan(
     const std::filesystem::path& dir,
     const std::function<void(std::string_view what, double fraction)>& progress) {
   Json stats = report.stats;
-  stats["delay_check"] = DescribeDelay(report.delay);
+  stats["calibration_check"] = DescribeCalibration(report.calibration);
   Doubts doubts = report.doubts;
   const bool has_view = scan.view.maps.width() > 0;
   const SurfaceMaps view =
@@ -287,7 +307,7 @@ Result<WrittenScan> WriteScan(
   // must not be lost for one that failed.
   RemoveOtherResults(dir, WrittenNames(options.export_(), has_view, scan.atlas.size()));
 
-  std::string text = SummaryText(scan, options, report.delay, *summary, *interpretation);
+  std::string text = SummaryText(scan, options, report.calibration, *summary, *interpretation);
   text += fmt::format("results  {}\n", dir.string());
   return WrittenScan{std::move(text), std::move(doubts)};
 }

@@ -8,7 +8,7 @@
 #include "common/base/processor_time.h"
 #include "common/base/status.h"
 #include "common/doubts/doubts.h"
-#include "ground/calibration/delay_check.h"
+#include "ground/calibration/calibration_check.h"
 #include "ground/json/json.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/scan/scan_model.h"
@@ -33,7 +33,7 @@ struct WrittenScan {
 
 /// Holds what a driver knows of a scan beside its model.
 struct DriverReport {
-  const DelayReport& delay;
+  const CalibrationCheckReport& calibration;
   const Doubts& doubts;  ///< About the frames.
   const Json& stats;     ///< DescribeScan() and whatever the driver adds.
 };

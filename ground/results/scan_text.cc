@@ -100,15 +100,19 @@ std::string DepthText(const ScanModel& scan) {
   return text;
 }
 
-std::string ThermalText(const ScanModel& scan, const DelayReport& delay) {
+std::string ThermalText(const ScanModel& scan, const CalibrationCheckReport& calibration) {
   const ScanCounts& counts = scan.counts;
   std::string text =
       fmt::format("thermal  {} frames: {} fused\n", counts.thermal_in, counts.thermal_fused);
   text += ExplainReasons(counts.thermal_left_out, "not used", ExplainLeftOut);
   if (!scan.thermal_status.ok())
     text += fmt::format("         {}\n", scan.thermal_status.message());
-  if (counts.thermal_in > 0 && delay.verdict != DelayVerdict::kOff)
-    text += fmt::format("delay    {}\n", Describe(delay));
+  if (counts.thermal_in == 0 || !calibration.is_on) return text;
+  const char* title = "rig";
+  for (const std::string& line : Describe(calibration)) {
+    text += fmt::format("{:<9}{}\n", title, line);
+    title = "";
+  }
   return text;
 }
 
@@ -166,10 +170,10 @@ std::string TimeText(const ScanModel& scan) {
 }  // namespace
 
 std::string SummaryText(const ScanModel& scan, const GroundOptions& options,
-                        const DelayReport& delay, const ResultSummary& summary,
+                        const CalibrationCheckReport& calibration, const ResultSummary& summary,
                         const Interpretation& interpretation) {
   return DepthText(scan) + SubMapsText(scan.atlas) + OdometryText(scan.external_odometry) +
-         ThermalText(scan, delay) + SurfaceText(summary, interpretation) +
+         ThermalText(scan, calibration) + SurfaceText(summary, interpretation) +
          MemoryText(scan, options) + TimeText(scan);
 }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ground/calibration/delay_check.h"
+#include "ground/calibration/calibration_check.h"
 #include "ground/export/result_files.h"
 #include "ground/interpretation/interpretation.h"
 #include "ground/options/ground_options.pb.h"
@@ -12,7 +12,7 @@ namespace isotherm {
 
 /// Returns a finished scan on one screen, for the user: frames, surface, temperatures, time.
 std::string SummaryText(const ScanModel& scan, const GroundOptions& options,
-                        const DelayReport& delay, const ResultSummary& summary,
+                        const CalibrationCheckReport& calibration, const ResultSummary& summary,
                         const Interpretation& interpretation);
 
 }  // namespace isotherm

@@ -85,6 +85,7 @@ void DescribeSituation(const GroundSituation& situation, live::State& state) {
   link.set_rig_present(situation.link.edge_present);
   link.set_problem(situation.link.rig_problem);
   if (situation.link.counters.clock) link.set_clock(ClockText(*situation.link.counters.clock));
+  state.set_moved_calibration(situation.moved_calibration);
   DescribeRecording(situation.recording, *state.mutable_disk());
   live::State::Load& load = *state.mutable_load();
   load.set_behind(situation.behind.now);

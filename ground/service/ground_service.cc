@@ -289,6 +289,7 @@ GroundSituation GroundService::Situation(std::optional<std::string> problem) con
                             .scans_being_written = board_.scans_being_written,
                             .scans_given_up = board_.scans_given_up,
                             .problem = std::move(problem),
+                            .moved_calibration = board_.calibration.Get().value_or(""),
                             .folder_problem = output_folder_.problem()};
   if (const auto tracker = board_.recording.Get()) situation.recording = (*tracker)->Get();
   return situation;

@@ -41,7 +41,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       pipeline_(std::move(pipeline)),
       feed_(feed),
       assembler_(rig.rig.thermal.has_value()),
-      delay_check_(options.delay_check(), rig.rig, std::nullopt),
+      calibration_check_(options.calibration_check(), rig.rig, std::nullopt),
       feedback_(options, rig),
       pace_(options.live().expert().feedback_hz()),
       shown_scan_(feed == nullptr ? 0 : feed->scan()) {}
@@ -96,18 +96,19 @@ BehindCounts LiveScan::behind() const {
           .depth_frames = counts.depth_behind};
 }
 
-DelayReport LiveScan::CheckDelay(const std::function<void()>& progress) {
+CalibrationCheckReport LiveScan::CheckCalibration(const std::function<void()>& progress) {
   CHECK(processor_after_.has_value());
-  // A check of 3 to 4 s (docs/timing.md) says once that it is at work; a shorter one says nothing.
+  // A check of several seconds (docs/calibration.md) says once that it is at work; a shorter one
+  // says nothing.
   constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   const SteadyTime start = clock_.SteadyNow();
   bool told = false;
-  return delay_check_.Finish(model(), [&](double fraction) {
+  return calibration_check_.Finish(model(), [&](double fraction) {
     if (progress) progress();
     if (told || clock_.SteadyNow() - start < kSilence) return;
     told = true;
-    LOG(Ground, Info) << fmt::format("checking the delay of the thermal camera, {:.0f} % done",
-                                     100.0 * fraction);
+    LOG(Ground, Info) << fmt::format(
+        "checking the calibration of the thermal camera, {:.0f} % done", 100.0 * fraction);
   });
 }
 
@@ -153,7 +154,7 @@ void LiveScan::Process(const Assembler::Frame& frame) {
     NoteQueueTime(thermal->get());
     if (feed_ != nullptr) feed_->Show(*thermal);
     pipeline_->ProcessThermal(*thermal);
-    delay_check_.Add(*thermal, model());
+    calibration_check_.Add(*thermal, model());
     return;
   }
   const DepthFramePtr& shared = std::get<DepthFramePtr>(frame);

@@ -15,7 +15,7 @@
 #include "common/messages/messages.h"
 #include "common/time/clock.h"
 #include "ground/assembler/assembler.h"
-#include "ground/calibration/delay_check.h"
+#include "ground/calibration/calibration_check.h"
 #include "ground/console/console_feed.h"
 #include "ground/feedback/feedback_maker.h"
 #include "ground/feedback/feedback_pace.h"
@@ -50,9 +50,9 @@ class LiveScan {
   void Add(const ExternalOdometrySample& sample);
   /// Processes what the assembler still holds back.
   void FinishFrames(const std::function<void(double fraction)>& progress = {});
-  /// Says whether the delay that the edge added to thermal stamps is right, once the frames are
+  /// Says whether pose and delay of the thermal camera are still as calibrated, once the frames are
   /// finished (CHECK).
-  DelayReport CheckDelay(const std::function<void()>& progress = {});
+  CalibrationCheckReport CheckCalibration(const std::function<void()>& progress = {});
 
   /// Returns feedback on the newest depth frame if a message is due (live.expert.feedback_hz, by
   /// capture time).
@@ -60,7 +60,7 @@ class LiveScan {
   /// Prepares the next message of feedback, a bounded part of the work each time; callers send
   /// first. Does nothing while frames wait.
   void ThinkAhead();
-  /// Returns what this process has used since the scan began, results and delay check left out once
+  /// Returns what this process has used since the scan began, results and check left out once
   /// the frames are finished. Two scans that overlap both count.
   ProcessorTimes processor_times() const;
   /// Coverage of the whole model as it goes into stats.json.
@@ -110,7 +110,7 @@ class LiveScan {
   std::unique_ptr<GroundPipeline> pipeline_;
   ConsoleFeed* feed_;  ///< nullptr without a console, and after LeaveConsole.
   Assembler assembler_;
-  DelayCheck delay_check_;
+  CalibrationCheck calibration_check_;
   FeedbackMaker feedback_;
   FeedbackPace pace_;
   bool is_behind_ = false;

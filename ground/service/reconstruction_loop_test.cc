@@ -55,7 +55,7 @@ class ReconstructionLoopTest : public ::testing::Test {
     *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
     options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(
         testing::kSmallTruncation_m);
-    options_.mutable_delay_check()->mutable_expert()->set_enabled(false);
+    options_.mutable_calibration_check()->mutable_expert()->set_enabled(false);
     options_.mutable_live()->set_output_dir(folder_.path().string());
     options_.set_threads(1);
   }

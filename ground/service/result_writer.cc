@@ -135,13 +135,14 @@ Json ResultWriter::FinishScan(EndedScan& ended) {
   LiveScan& scan = *ended.scan;
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
   scan.FinishFrames([&](double) { go_on(); });
-  const DelayReport delay = scan.CheckDelay([&] { go_on(); });
+  const CalibrationCheckReport calibration = scan.CheckCalibration([&] { go_on(); });
+  board_.calibration.Set(WhatHasMoved(calibration));
   go_on();
   // The summary says how much the recording has; its last chunk is being written meanwhile.
   const RecordingProgress recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
   const SessionCounters counters = counters_(scan.session());
   const Json stats = DescribeEnd(scan, options_, counters, recording, ended.unprocessed);
-  const Result<std::string> text = WriteWithFallback(scan, delay, stats, ended.start.folder);
+  const Result<std::string> text = WriteWithFallback(scan, calibration, stats, ended.start.folder);
   if (!text) {
     status_ = text.error();
     LOG(Ground, Error) << status_.message();
@@ -185,13 +186,14 @@ void ResultWriter::Complete(const SessionStart& start, const Json& stats,
                        << WhereLateFramesAre(recording);
 }
 
-Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayReport& delay,
+Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan,
+                                                    const CalibrationCheckReport& calibration,
                                                     const Json& stats, const fs::path& folder) {
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
-    Result<WrittenScan> written =
-        WriteScan(scan.model(), options_, {delay, DoubtsAbout(scan.rig()), stats}, to, progress);
+    Result<WrittenScan> written = WriteScan(
+        scan.model(), options_, {calibration, DoubtsAbout(scan.rig()), stats}, to, progress);
     if (!written) return Err(written.error());
     for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
     return std::move(written->text);

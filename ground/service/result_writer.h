@@ -74,8 +74,8 @@ class ResultWriter {
   /// Brings in what came too late for the model, and gives up when another scan waits.
   void Complete(const SessionStart& start, const Json& stats, const std::stop_token& stop);
   /// Writes into the scan's folder or, if that fails, into another. Returns the summary.
-  Result<std::string> WriteWithFallback(LiveScan& scan, const DelayReport& delay, const Json& stats,
-                                        const std::filesystem::path& folder);
+  Result<std::string> WriteWithFallback(LiveScan& scan, const CalibrationCheckReport& calibration,
+                                        const Json& stats, const std::filesystem::path& folder);
 
   const GroundOptions& options_;
   const Clock& clock_;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "common/concurrency/latest_value.h"
 #include "common/messages/messages.h"
@@ -24,6 +25,8 @@ struct ScanBoard {
   LatestValue<EdgeStatus> edge;
   LatestValue<BehindCounts> behind;
   LatestValue<std::shared_ptr<RecordingTracker>> recording;
+  /// What of the calibration has moved by the last scan that was checked; empty = nothing.
+  LatestValue<std::string> calibration;
   /// The results of the model so far would take this much.
   std::atomic<std::uint64_t> result_bytes{0};
   std::atomic<int> scans_being_written{0};  ///< Ended ones whose results are not there yet.

@@ -64,6 +64,8 @@ std::vector<std::string> TroublesOf(const GroundSituation& situation) {
   if (situation.link.counters.clock && situation.link.counters.clock->alarm)
     parts.emplace_back("CLOCK ALARM");
   if (situation.folder_problem) parts.push_back("NO OUTPUT FOLDER: " + *situation.folder_problem);
+  if (!situation.moved_calibration.empty())
+    parts.push_back("CALIBRATION: " + situation.moved_calibration);
   if (situation.recording.paused) parts.emplace_back("NOT RECORDING");
   if (situation.recording.left_out() > 0) {
     parts.push_back(fmt::format("RECORDING LACKS {} frames", situation.recording.left_out()));

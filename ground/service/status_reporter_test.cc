@@ -134,6 +134,13 @@ TEST(StatusReporterTest, F31AMissingOutputFolderIsSaidBeforeAScanToo) {
             "Read-only file system");
 }
 
+TEST(StatusReporterTest, ACalibrationThatHasMovedIsSaid) {
+  GroundSituation situation;
+  situation.moved_calibration = "the thermal camera's calibration has moved (pose moved by 1.2 px)";
+  EXPECT_THAT(StatusText(situation), HasSubstr("CALIBRATION: the thermal camera's calibration has "
+                                               "moved"));
+}
+
 TEST(StatusReporterTest, F28AdviceThatIsOldWhenItArrivesIsSaid) {
   GroundSituation situation = Scanning();
   situation.edge = EdgeStatus();

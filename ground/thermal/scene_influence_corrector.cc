@@ -8,10 +8,7 @@
 namespace isotherm {
 namespace {
 
-/// Side of the cells in which the means are found. The near mean has a sigma of 40 px, so that
-/// cells of 8 lose nothing that shows (0.01 K in the scene-influence experiment); smaller ones cost
-/// time by the square.
-constexpr int kCellPixels = 8;
+constexpr int kCellPixels = SceneInfluenceCorrector::kCellPixels;
 /// The Gaussian ends here, where 0.3 % of it are left along each axis; the weights are divided by
 /// their sum.
 constexpr double kCutOffSigmas = 3.0;
@@ -29,15 +26,25 @@ std::vector<float> GaussianWeights(double sigma) {
 
 int Cells(int pixels) { return (pixels + kCellPixels - 1) / kCellPixels; }
 
-}  // namespace
-
-SceneInfluenceCorrector::CellInterpolation SceneInfluenceCorrector::CellsAround(int pixel,
-                                                                                int cells) {
+CellInterpolation CellsAround(double pixel, int cells) {
   const float position =
       (static_cast<float>(pixel) + 0.5F) / static_cast<float>(kCellPixels) - 0.5F;
   const float at = std::clamp(position, 0.0F, static_cast<float>(cells - 1));
   const int first = std::min(static_cast<int>(at), std::max(0, cells - 2));
   return {first, std::min(first + 1, cells - 1), at - static_cast<float>(first)};
+}
+
+}  // namespace
+
+float InfluenceMeans::NearAt(double x, double y) const {
+  const CellInterpolation columns = CellsAround(x, near.width());
+  const CellInterpolation rows = CellsAround(y, near.height());
+  const auto along_row = [&](int row) {
+    const float first = near.At(columns.first, row), second = near.At(columns.second, row);
+    return first + columns.fraction * (second - first);
+  };
+  const float upper = along_row(rows.first);
+  return upper + rows.fraction * (along_row(rows.second) - upper);
 }
 
 SceneInfluenceCorrector::SceneInfluenceCorrector(const SceneInfluence& influence, int width,
@@ -121,18 +128,17 @@ void SceneInfluenceCorrector::Correct(Image<float>& celsius) {
   const float gain = 1.0F / (1.0F - near_fraction - total_fraction);
   AverageCells(celsius);
   std::ranges::copy(measured_.pixels(), values_.pixels().begin());
-  float total = 0.0F;
   // The means are of the own temperatures, which are what is looked for: begin with the measured
   // ones, and repeat.
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     AverageNeighbourhoods();
-    total = AverageAll();
+    total_ = AverageAll();
     for (std::size_t i = 0; i < values_.size(); ++i) {
       values_.pixels()[i] = gain * (measured_.pixels()[i] - near_fraction * near_.pixels()[i] -
-                                    total_fraction * total);
+                                    total_fraction * total_);
     }
   }
-  Subtract({near_fraction, total_fraction * total, gain}, celsius);
+  Subtract({near_fraction, total_fraction * total_, gain}, celsius);
 }
 
 void SceneInfluenceCorrector::Subtract(const CorrectionTerms& terms, Image<float>& celsius) {

@@ -7,6 +7,21 @@
 
 namespace isotherm {
 
+/// Where a pixel lies between the middles of two cells of a row or column.
+struct CellInterpolation {
+  int first = 0, second = 0;
+  float fraction = 0.0F;
+};
+
+/// Holds the means that a correction rested on, of the pixels' own temperatures, °C.
+struct InfluenceMeans {
+  Image<float> near;  ///< By cell of SceneInfluenceCorrector::kCellPixels.
+  float total = 0.0F;
+
+  /// The mean around a place of the image, pixels.
+  float NearAt(double x, double y) const;
+};
+
 /// Takes out of thermal images what the radiation on other pixels adds to each one (thesis 5.1):
 ///
 ///   measured = own + near_fraction (near - own) + total_fraction (total - own)
@@ -16,24 +31,26 @@ namespace isotherm {
 /// so smooth that they are found, and the equation solved, on cells of 8 x 8 pixels. Thread-bound.
 class SceneInfluenceCorrector {
  public:
+  /// Side of the cells in which the means are found. The near mean has a sigma of 40 px, so that
+  /// cells of 8 lose nothing that shows (0.01 K in the scene-influence experiment); smaller ones
+  /// cost time by the square.
+  static constexpr int kCellPixels = 8;
+
   /// `influence` is valid, images have this size.
   SceneInfluenceCorrector(const SceneInfluence& influence, int width, int height);
 
   /// Turns measured temperatures into the pixels' own, °C; NaN is "no value" and stays so.
   void Correct(Image<float>& celsius);
 
+  /// Those of the last image.
+  InfluenceMeans means() const { return {near_, total_}; }
+
  private:
-  /// Where a pixel lies between the middles of two cells of a row or column.
-  struct CellInterpolation {
-    int first = 0, second = 0;
-    float fraction = 0.0F;
-  };
   /// own = gain (measured - near_fraction near - total).
   struct CorrectionTerms {
     float near_fraction, total, gain;
   };
 
-  static CellInterpolation CellsAround(int pixel, int cells);
   void AverageCells(const Image<float>& celsius);
   /// The near mean of `values_`, into `near_`.
   void AverageNeighbourhoods();
@@ -42,6 +59,7 @@ class SceneInfluenceCorrector {
   void Subtract(const CorrectionTerms& terms, Image<float>& celsius);
 
   const SceneInfluence influence_;
+  float total_ = 0.0F;
   const int columns_, rows_;               ///< Number of cells.
   std::vector<float> weights_;             ///< The Gaussian, from the middle outwards, in cells.
   Image<float> measured_;                  ///< Mean of each cell.

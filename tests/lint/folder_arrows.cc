@@ -122,7 +122,7 @@ const FolderArrows& Arrows() {
       {"ground/feedback",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal", "ground/renderer",
         "ground/scan"}},
-      {"ground/calibration", {"ground/options", "ground/tsdf", "ground/scan"}},
+      {"ground/calibration", {"ground/options", "ground/tsdf", "ground/thermal", "ground/scan"}},
       {"ground/pipeline",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/thermal",
         "ground/atlas", "ground/tracker", "ground/model", "ground/scan"}},

@@ -126,7 +126,7 @@ TEST_F(DamagedRecordingTest, F65WhatARecordingSaysOfItselfIsPrintedWithoutContro
 TEST_F(DamagedRecordingTest, F45ARecordingWithoutItsCalibrationTakesAnotherOne) {
   ASSERT_EQ(Run("simulate --scene corner-sphere --duration 0.3 -o scan.mcap").status, 0);
   CopyWithoutRig();
-  const std::string quick = " --voxel 0.006 --set delay_check.expert.enabled=false";
+  const std::string quick = " --voxel 0.006 --set calibration_check.expert.enabled=false";
   const Outcome without = Run("reconstruct bare.mcap -o none" + quick);
   EXPECT_EQ(without.status, 66);
   EXPECT_THAT(without.err, HasSubstr("--rig"));

@@ -55,7 +55,7 @@ class DoubtfulScanTest : public ToolRun {
 
   Outcome Reconstruct(const std::string& arguments) const {
     return Run("reconstruct " + arguments +
-               " --voxel 0.006 --set delay_check.expert.enabled=false");
+               " --voxel 0.006 --set calibration_check.expert.enabled=false");
   }
 
   /// inspect and reconstruct say it, and the result is there and says it, too.
@@ -151,14 +151,14 @@ TEST_F(DoubtfulScanTest, AModelThatWasNotFoundAgainDoesNotPassForTheNewResult) {
   Simulate("elsewhere.mcap", "furnace-door");
   const Outcome next =
       Run("reconstruct elsewhere.mcap -o next --continue out/model.iso "
-          "--set delay_check.expert.enabled=false");
+          "--set calibration_check.expert.enabled=false");
   EXPECT_EQ(next.status, kData);
   EXPECT_THAT(next.err, AllOf(HasSubstr("was found in the model"), HasSubstr("unchanged"),
                               HasSubstr("without --continue")));
   EXPECT_THAT(ReadAll(folder_ / "next/stats.json"), HasSubstr("that model, unchanged"));
   const Outcome same =
       Run("reconstruct scan.mcap -o same --continue out/model.iso "
-          "--set delay_check.expert.enabled=false");
+          "--set calibration_check.expert.enabled=false");
   EXPECT_EQ(same.status, 0) << same.err;
 }
 
@@ -196,7 +196,7 @@ TEST_F(DoubtfulScanTest, LargerVoxelsNeedNoOtherOption) {
   Simulate();
   const Outcome outcome =
       Run("reconstruct scan.mcap -o out --volume \"3.2 2.4 3.2\" --voxel 0.006 "
-          "--set delay_check.expert.enabled=false");
+          "--set calibration_check.expert.enabled=false");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(ReadAll(folder_ / "out/stats.json"), HasSubstr("\"truncation_distance_m\": 0.024"));
   EXPECT_THAT(Run("reconstruct scan.mcap -o other --voxel 2").err,

@@ -23,7 +23,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Puts a rig's thermal camera elsewhere: a turn of one degree, 8 mm, 20 ms, 6 px.
+/// Puts a rig's thermal camera elsewhere: a turn of one degree, 8 mm, 20 ms, 6 px; and forgets what
+/// other pixels add to each one.
 Rig Disturbed(const Rig& right, const Eigen::Vector3d& turn_about, const Eigen::Vector3d& towards,
               double delay_s, const Eigen::Vector2d& principal_px) {
   Rig rig = right;
@@ -34,6 +35,7 @@ Rig Disturbed(const Rig& right, const Eigen::Vector3d& turn_about, const Eigen::
   rig.thermal_delay_s += delay_s;
   rig.thermal->cx += principal_px.x();
   rig.thermal->cy += principal_px.y();
+  rig.thermal_sensor.scene_influence = {};
   return rig;
 }
 
@@ -104,12 +106,19 @@ class RefineToolTest : public ToolRun {
     EXPECT_LT(moved_m, 0.001);
     EXPECT_LT(std::abs(delay_s), 0.001);
     EXPECT_LT(principal_px, 1.0);
+    const SceneInfluence &a = found.thermal_sensor.scene_influence,
+                         &b = right.thermal_sensor.scene_influence;
+    std::printf("influence %.4f and %.4f of %.4f and %.4f\n", a.near_fraction, a.total_fraction,
+                b.near_fraction, b.total_fraction);
+    EXPECT_NEAR(a.near_fraction, b.near_fraction, 0.003);
+    EXPECT_NEAR(a.total_fraction, b.total_fraction, 0.003);
   }
 };
 
 TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
-  RunWell("simulate -o scan.mcap --duration 10 --seed 5");
+  RunWell("simulate -o scan.mcap --duration 10 --seed 5 --set ideal_cameras=false");
   const Rig right = Recorded("scan.mcap");
+  ASSERT_GT(right.thermal_sensor.scene_influence.near_fraction, 0.03);
   WriteRig("rig.textproto",
            Disturbed(right, {1.0, -2.0, 1.0}, {-1.0, 1.0, 1.0}, 0.02, {4.0, -4.5}));
   const std::string before = ReadAll(folder_ / "rig.textproto");
@@ -121,12 +130,13 @@ TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
                                   HasSubstr("new.textproto: written")));
   EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), before);
   ExpectNear(LoadRigCalibration(folder_ / "new.textproto").value(), right, 0.2);
-  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), HasSubstr("rx ry rz tx ty tz delay cx cy"));
+  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), HasSubstr("rx ry rz tx ty tz delay cx cy near total"));
   EXPECT_EQ(ReadAll(folder_ / "both.png").substr(1, 3), "PNG");
   const nlohmann::json all = nlohmann::json::parse(ReadAll(folder_ / "all.json"));
   EXPECT_EQ(all["pose"], "moved");
-  EXPECT_EQ(all["values"].size(), 9U);
-  EXPECT_EQ(all["covariance"].size(), 9U);
+  EXPECT_EQ(all["influence"], "moved");
+  EXPECT_EQ(all["values"].size(), 11U);
+  EXPECT_EQ(all["covariance"].size(), 11U);
   EXPECT_LT(all["held_out_after_k"].get<double>(), all["held_out_before_k"].get<double>());
 
   // How the lenses were found is kept.
@@ -147,7 +157,7 @@ TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
 }
 
 TEST_F(RefineToolTest, CheckFindsLittleAndIsNotAlarmedByGaps) {
-  RunWell("simulate -o scan.mcap --duration 10 --seed 6");
+  RunWell("simulate -o scan.mcap --duration 10 --seed 6 --set ideal_cameras=false");
   const Rig right = Recorded("scan.mcap");
   CopyWithGaps("scan.mcap", "gaps.mcap");
   const Outcome gaps = Run("calibrate check gaps.mcap");

@@ -77,7 +77,7 @@ export class InputsPanel {
   private readonly rows = {
     link: row("Rig"), depth: row("Depth"), thermal: row("Thermal"), dropped: row("Dropped"), missing: row("Missing"),
     backlog: row("Backlog"), nuc: row("Correction"), temperatures: row("Camera"), clock: row("Clock"), age: row("Feedback age"),
-    rigDisk: row("Rig's disk"), disk: row("Disk here"), recording: row("Recording"), load: row("Ground"), page: row("This page"),
+    rigDisk: row("Rig's disk"), disk: row("Disk here"), recording: row("Recording"), load: row("Ground"), calibration: row("Calibration"), page: row("This page"),
   };
 
   constructor(looks: LookStore) {
@@ -128,5 +128,6 @@ export class InputsPanel {
       disk?.paused || (disk?.leftOut ?? 0n) > 0n ? "bad" : "");
     rows.load.set(load?.problem ? load.problem : load?.behind ? `behind: ${load.thermalLeftOut} thermal frames left out` : "keeps up",
       load?.problem ? "bad" : load?.behind ? "warn" : "good");
+    rows.calibration.set(state.movedCalibration || "–", state.movedCalibration ? "bad" : "");
   }
 }
