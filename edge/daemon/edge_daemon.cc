@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/doubts/calibration_doubts.h"
 #include "common/doubts/doubts.h"
+#include "common/options/text_proto.h"
 #include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "common/transport/join_domain.h"
 #include "edge/daemon/capture.h"
 #include "edge/daemon/edge_report.h"
@@ -40,6 +43,16 @@ Result<std::optional<Rig>> LoadCalibration(const SourceOptions& options) {
   Result<Rig> rig = LoadRigCalibration(options.rig_file());
   if (!rig) return Err(rig.error());
   return std::optional<Rig>(std::move(*rig));
+}
+
+/// Says what of the configured file is old or uncertain.
+void LogRecords(const SourceOptions& options, CaptureTime now) {
+  RigCalibration file;
+  if (options.rig_file().empty() || !LoadTextProto(options.rig_file(), file).ok()) return;
+  const std::chrono::sys_days today(std::chrono::floor<std::chrono::days>(now.time_since_epoch()));
+  for (const std::string& doubt :
+       DoubtsAboutRecords(file, today, {.max_age_days = options.rig_max_age_days()}))
+    LOG(Edge, Warning) << doubt;
 }
 
 /// Says what is missing for temperatures on the surface.
@@ -156,6 +169,7 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   if (!source) return {.status = stop.stop_requested() ? 0 : Fail(source.error())};
   const std::optional<Rig> rig = calibration ? calibration : (*source)->rig();
   LogRig(rig);
+  LogRecords(options.source(), clock.Now());
   LogCounts((*source)->cameras());
   const EdgeSession session{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
                             rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};

@@ -82,6 +82,7 @@ Status Validate(const SourceOptions& options) {
   OptionProblems problems("source");
   problems.CheckRange("rate", options.rate(), 0.0, 100.0);
   problems.CheckRange("loops", options.loops(), 0, 1'000'000);
+  problems.CheckRange("rig_max_age_days", options.rig_max_age_days(), 0, 100'000);
   problems.CheckRange("expert.capture_queue_frames", options.expert().capture_queue_frames(), 1,
                       1000);
   if (options.kind() == REPLAY && options.recording().empty()) {
