@@ -25,7 +25,7 @@ std::optional<std::chrono::sys_days> DayOf(const std::string& date) {
   return std::chrono::sys_days(parsed);
 }
 
-/// What a record is about, and how it is found anew.
+/// Names what a record is about, and how it is found anew.
 struct Part {
   const char* name;
   const char* remedy;

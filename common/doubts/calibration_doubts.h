@@ -11,7 +11,7 @@ class RigCalibration;
 /// Holds from where on a calibration is to be doubted.
 struct CalibrationLimits {
   int max_age_days = 365;       ///< 0 = any age will do.
-  double uncertainty_px = 0.5;  ///< What the fusion takes as a registration error.
+  double uncertainty_px = 0.5;  ///< The fusion takes as much as a registration error.
 };
 
 /// Doubts a calibration file whose values are old, dated tomorrow or later, or less certain than

@@ -40,7 +40,7 @@ std::vector<std::string> Describe(const CalibrationCheckReport& report);
 /// The worst of its parts' verdicts, of temperatures apart.
 CheckVerdict Overall(const CalibrationCheckReport& report);
 
-/// What has moved, in one sentence for an operator; empty = nothing.
+/// Returns what has moved, in one sentence for an operator; empty = nothing.
 std::string WhatHasMoved(const CalibrationCheckReport& report);
 
 /// Checks the calibration with what one scan has anyway: its poses, its surface and some of its

@@ -29,8 +29,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::uint64_t kSeed = 20;
-// Small cameras and large voxels: poses drift by more than with the usual ones.
-constexpr double kTolerance_s = 0.003;
+// Small cameras, large voxels and one or two reversals: two standard deviations of the estimate.
+constexpr double kTolerance_s = 0.006;
 
 std::string TextOf(const CalibrationCheckReport& report) {
   return fmt::format("{}", fmt::join(Describe(report), "\n"));
@@ -151,7 +151,7 @@ TEST_F(CalibrationCheckTest, WhatIsRightAgrees) {
 }
 
 TEST_F(CalibrationCheckTest, AWrongDelayHasMoved) {
-  for (const double late_s : {-0.06, 0.012}) {
+  for (const double late_s : {-0.06, 0.02}) {
     const CalibrationCheckReport report = Check(late_s, 0.0);
     ASSERT_EQ(report.verdict.delay, CheckVerdict::kMoved) << report.reason;
     EXPECT_NEAR(report.refinement->correction[kDelay], -late_s, kTolerance_s);

@@ -22,8 +22,8 @@ std::string_view ToString(CheckVerdict verdict);
 struct CheckLimits {
   double shift_px = 0.5;  ///< In the thermal image, root mean square.
   double delay_s = 0.003;
-  double influence = 0.01;      ///< Of the scene: the sum of both fractions (SceneInfluence).
-  double epoch_offset_k = 1.0;  ///< Of one place, from one NUC to another.
+  double influence = 0.01;      ///< The scene's, both fractions together (SceneInfluence).
+  double epoch_offset_k = 1.0;  ///< From one NUC to another, at one place.
 };
 
 /// Says how the parts of a calibration fit a scan.

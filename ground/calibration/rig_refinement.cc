@@ -223,8 +223,8 @@ class Refiner {
     return OkStatus();
   }
 
-  /// What poses are off by along the motion passes for a delay, and the images agree: the drift
-  /// that is solved for does not show it. Not more than was known before.
+  /// Poses that are off along the motion pass for a delay, and the images agree: the drift that is
+  /// solved for does not show it. Not more than was known before.
   double DelaySigmaOfDriftAlong() const {
     const double drift_px = views_.pose_drift_m * PixelsPerMetre(views_).value_or(0.0);
     constexpr double kWholeScan_s = std::numeric_limits<double>::infinity();

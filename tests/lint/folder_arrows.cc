@@ -145,7 +145,7 @@ const FolderArrows& Arrows() {
       {"ground/experiment",
        {"common/simulation", "ground/options", "ground/surface", "ground/tsdf", "ground/thermal",
         "ground/renderer", "ground/json", "ground/mesh", "ground/scan", "ground/feedback",
-        "ground/pipeline", "ground/evaluation", "ground/camera_calibration"}},
+        "ground/pipeline", "ground/evaluation", "ground/calibration", "ground/camera_calibration"}},
       {"ground/option_validation",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/relocaliser",
         "ground/thermal", "ground/renderer", "ground/interpretation", "ground/export",
