@@ -24,7 +24,7 @@ constexpr double kNuc_s = 9.0;
 // As a depth camera behind a bad cable: 0.4 s of each second are missing.
 constexpr double kGap_s = 0.4;
 
-/// What is wrong with a rig's calibration.
+/// Says what is wrong with a rig's calibration.
 struct Disturbance {
   double rotation_deg = 0.0;
   double delay_s = 0.0;
@@ -89,7 +89,7 @@ bool IsInGap(int scan, double scanned_s) {
   return scan % 3 == 0 && scanned_s > 1.0 && scanned_s - std::floor(scanned_s) > 1.0 - kGap_s;
 }
 
-/// What the checks of one scan said.
+/// Holds what the checks of one scan said.
 struct Checked {
   CalibrationCheckReport right, moved, hardly_moved;
 };

@@ -25,7 +25,7 @@ struct ScanBoard {
   LatestValue<EdgeStatus> edge;
   LatestValue<BehindCounts> behind;
   LatestValue<std::shared_ptr<RecordingTracker>> recording;
-  /// What of the calibration has moved by the last scan that was checked; empty = nothing.
+  /// Says what of the calibration has moved, by the last scan that was checked; empty = nothing.
   LatestValue<std::string> calibration;
   /// The results of the model so far would take this much.
   std::atomic<std::uint64_t> result_bytes{0};

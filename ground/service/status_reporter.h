@@ -23,7 +23,7 @@ struct GroundSituation {
   int scans_being_written = 0;
   int scans_given_up = 0;                       ///< Their results are lost.
   std::optional<std::string> problem;           ///< The part that is stuck.
-  std::string moved_calibration;                ///< What the last scan says has; empty = nothing.
+  std::string moved_calibration;                ///< By the last scan; empty = nothing.
   std::optional<std::string> folder_problem{};  ///< The reason for which nothing can be written.
 };
 

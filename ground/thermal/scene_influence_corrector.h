@@ -42,7 +42,7 @@ class SceneInfluenceCorrector {
   /// Turns measured temperatures into the pixels' own, °C; NaN is "no value" and stays so.
   void Correct(Image<float>& celsius);
 
-  /// Those of the last image.
+  /// Returns the means of the last image.
   InfluenceMeans means() const { return {near_, total_}; }
 
  private:
