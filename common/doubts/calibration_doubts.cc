@@ -77,7 +77,7 @@ Doubts DoubtsAboutRecords(const RigCalibration& rig, std::chrono::sys_days today
   bool has_records = false;
   const auto add = [&](const Part& part, bool has, const CalibrationRecord& record) {
     if (!has) return;
-    has_records = true;
+    has_records = has_records || !record.date().empty();
     AddAge(part, record.date(), today, limits, doubts);
     AddUncertainty(part, record, limits, doubts);
   };

@@ -14,7 +14,7 @@ struct CalibrationLimits {
   double uncertainty_px = 0.5;  ///< The fusion takes as much as a registration error.
 };
 
-/// Doubts a calibration file whose values are old, dated tomorrow or later, or less certain than
+/// Doubts a calibration file whose values are old, dated later than tomorrow, or less certain than
 /// the limit.
 Doubts DoubtsAboutRecords(const RigCalibration& rig, std::chrono::sys_days today,
                           const CalibrationLimits& limits);

@@ -169,7 +169,6 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   if (!source) return {.status = stop.stop_requested() ? 0 : Fail(source.error())};
   const std::optional<Rig> rig = calibration ? calibration : (*source)->rig();
   LogRig(rig);
-  LogRecords(options.source(), clock.Now());
   LogCounts((*source)->cameras());
   const EdgeSession session{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
                             rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
@@ -202,6 +201,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
     leaving.deadline.ArmFirst(stop_limits::kDisk, leaving.status_if_stuck, "what was under way");
   });
   const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
+  LogRecords(options.source(), clock.Now());
   if (!calibration) return Fail(calibration.error());
   Link link;
   CaptureEnd end{.another_scan = true};

@@ -91,7 +91,7 @@ AlignmentStep SolveAlignment(const AlignmentEquations& equations, const Alignmen
   const Eigen::MatrixXd information = to_units.transpose() * equations.information * to_units;
   const Eigen::VectorXd gradient = to_units.transpose() * equations.gradient;
   const Eigen::VectorXd drift_so_far =
-      prior.drift_factor.triangularView<Eigen::Lower>().solve(drift);
+      drift.isZero(0.0) ? drift : prior.drift_factor.triangularView<Eigen::Lower>().solve(drift);
   const double inflation =
       VarianceInflation(equations, to_units, Reduce(information, gradient, drift_so_far, 1.0));
   const Reduced reduced = Reduce(information, gradient, drift_so_far, inflation);

@@ -139,7 +139,7 @@ TEST(AlignmentStepTest, ADriftThatStaysAlikeLeavesMoreUncertain) {
 }
 
 TEST(AlignmentStepTest, PriorOfZeroFixes) {
-  AlignmentPrior prior = UnitPrior(1e-9);
+  AlignmentPrior prior = UnitPrior(0.0);
   prior.placement_sigma[kDelay] = 0.0;
   const Eigen::MatrixXd information = 1000.0 * Eigen::MatrixXd::Identity(kAll, kAll);
   const AlignmentStep step =
@@ -147,7 +147,7 @@ TEST(AlignmentStepTest, PriorOfZeroFixes) {
                      PlacementVector::Zero(), Eigen::VectorXd::Zero(kKnots));
   EXPECT_EQ(step.placement[kDelay], 0.0);
   EXPECT_NEAR(step.placement[kRotationX], 0.2, 0.01);
-  EXPECT_TRUE(step.drift.isZero(1e-9));
+  EXPECT_TRUE(step.drift.isZero(0.0));
 }
 
 }  // namespace

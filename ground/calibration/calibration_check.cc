@@ -98,7 +98,7 @@ std::string WhatHasMoved(const CalibrationCheckReport& report) {
     parts.push_back("delay " + DescribeDelay(refinement, verdict.delay));
   if (verdict.influence == CheckVerdict::kMoved)
     parts.push_back("influence " + DescribeInfluence(refinement, verdict.influence));
-  return fmt::format("the thermal camera's calibration has moved ({}): calibrate it again, {}",
+  return fmt::format("the thermal camera is not as it was calibrated ({}): calibrate it again, {}",
                      fmt::join(parts, "; "), kWhatToDo);
 }
 

@@ -190,7 +190,8 @@ TEST_F(CalibrationCheckTest, ATurnedCameraAndAnOffsetBetweenNucsAreSaid) {
 
 TEST_F(CalibrationCheckTest, GapsOfTheDepthStreamDoNotMoveADelayThatIsRight) {
   const CalibrationCheckReport report = Check(0.0, 0.0, with_gaps_->model());
-  EXPECT_NE(report.verdict.delay, CheckVerdict::kMoved) << "may be told, or not assessed";
+  ASSERT_TRUE(report.refinement) << report.reason;
+  EXPECT_FALSE(report.verdict.Moved()) << "may be told, or not assessed";
 }
 
 /// In each third second depth frames are missing for 0.4 s. Behind that the tracker slides along
@@ -306,6 +307,8 @@ TEST(CalibrationCheckOptionsTest, OptionsAreChecked) {
               HasSubstr("calibration_check.expert.max_shift_s"));
   EXPECT_THAT(message([](Expert& o) { o.set_max_shift_px(-1.0); }),
               HasSubstr("calibration_check.expert.max_shift_px"));
+  EXPECT_THAT(message([](Expert& o) { o.set_max_influence(1.0); }),
+              HasSubstr("calibration_check.expert.max_influence"));
   EXPECT_THAT(message([](Expert& o) { o.set_max_epoch_offset_k(NAN); }),
               HasSubstr("calibration_check.expert.max_epoch_offset_k"));
   EXPECT_THAT(message([](Expert& o) { o.set_max_frames(10); }),

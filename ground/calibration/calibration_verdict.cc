@@ -19,7 +19,9 @@ constexpr double kMaxSigmaOfInfluence = 0.02;
 
 CheckVerdict AssessSize(double size, double sigma, double limit, double max_sigma_to_agree) {
   if (std::abs(size) > std::max(limit, kSigmas * sigma)) return CheckVerdict::kMoved;
-  return sigma > max_sigma_to_agree ? CheckVerdict::kNotAssessed : CheckVerdict::kAgrees;
+  // Nor is what is not a number told.
+  return std::isfinite(size) && sigma <= max_sigma_to_agree ? CheckVerdict::kAgrees
+                                                            : CheckVerdict::kNotAssessed;
 }
 
 std::string Sentence(CheckVerdict verdict, const std::string& figures) {
@@ -28,6 +30,8 @@ std::string Sentence(CheckVerdict verdict, const std::string& figures) {
       return "moved by " + figures;
     case CheckVerdict::kAgrees:
       return "ok, within " + figures;
+    case CheckVerdict::kRefuted:
+      return "cannot tell here: " + figures + ", but images that were held out do not agree better";
     case CheckVerdict::kNotAssessed:
     case CheckVerdict::kOff:
       break;
@@ -35,10 +39,7 @@ std::string Sentence(CheckVerdict verdict, const std::string& figures) {
   return "cannot tell here: " + figures;
 }
 
-/// By how much both fractions of the scene's influence together differ from the calibration.
-struct FractionChange {
-  double sum = 0.0, sigma = 0.0;
-};
+}  // namespace
 
 FractionChange ChangeOfInfluence(const Refinement& refinement) {
   return {refinement.correction.segment<2>(kNearInfluence).sum(),
@@ -46,21 +47,14 @@ FractionChange ChangeOfInfluence(const Refinement& refinement) {
               0.0, refinement.covariance.block<2, 2>(kNearInfluence, kNearInfluence).sum()))};
 }
 
-/// Returns what makes a part untold that seems to have moved.
-std::string Refuted(const Refinement& refinement, CheckVerdict verdict) {
-  const bool is_refuted = verdict == CheckVerdict::kNotAssessed &&
-                          refinement.observed_directions > 0 && !refinement.held_out.improves;
-  return is_refuted ? ", but images that were held out do not agree better" : "";
-}
-
-}  // namespace
-
 std::string_view ToString(CheckVerdict verdict) {
   switch (verdict) {
     case CheckVerdict::kOff:
       return "off";
     case CheckVerdict::kNotAssessed:
       return "could not be assessed";
+    case CheckVerdict::kRefuted:
+      return "refuted by images that were held out";
     case CheckVerdict::kAgrees:
       return "agrees";
     case CheckVerdict::kMoved:
@@ -76,7 +70,7 @@ bool CalibrationVerdict::Moved() const {
 
 bool CalibrationVerdict::Agrees() const {
   return pose == CheckVerdict::kAgrees && delay == CheckVerdict::kAgrees &&
-         influence == CheckVerdict::kAgrees;
+         influence != CheckVerdict::kMoved;
 }
 
 CheckVerdict Assess(const DelayEstimate& off_by, double max_shift_s) {
@@ -95,7 +89,7 @@ CalibrationVerdict Assess(const Refinement& refinement, const CheckLimits& limit
       AssessSize(influence.sum, influence.sigma, limits.influence, kMaxSigmaOfInfluence);
   if (!refinement.held_out.improves) {
     for (CheckVerdict* part : {&verdict.pose, &verdict.delay, &verdict.influence}) {
-      if (*part == CheckVerdict::kMoved) *part = CheckVerdict::kNotAssessed;
+      if (*part == CheckVerdict::kMoved) *part = CheckVerdict::kRefuted;
     }
   }
   if (const auto& offset = refinement.epoch_offset) {
@@ -107,22 +101,19 @@ CalibrationVerdict Assess(const Refinement& refinement, const CheckLimits& limit
 
 std::string DescribePose(const Refinement& refinement, CheckVerdict verdict) {
   return Sentence(verdict, fmt::format("{:.2f} px in the thermal image, uncertain by {:.2f} px",
-                                       refinement.shift.rms_px, refinement.shift.sigma_px)) +
-         Refuted(refinement, verdict);
+                                       refinement.shift.rms_px, refinement.shift.sigma_px));
 }
 
 std::string DescribeDelay(const Refinement& refinement, CheckVerdict verdict) {
-  return Sentence(verdict, fmt::format("{:+.1f} ms, uncertain by {:.1f} ms",
-                                       1e3 * refinement.correction[kDelay],
-                                       1e3 * refinement.Sigma(kDelay))) +
-         Refuted(refinement, verdict);
+  return Sentence(verdict,
+                  fmt::format("{:+.1f} ms, uncertain by {:.1f} ms",
+                              1e3 * refinement.correction[kDelay], 1e3 * refinement.Sigma(kDelay)));
 }
 
 std::string DescribeInfluence(const Refinement& refinement, CheckVerdict verdict) {
   const FractionChange influence = ChangeOfInfluence(refinement);
   return Sentence(verdict, fmt::format("{:+.1f} % of what other pixels show, uncertain by {:.1f} %",
-                                       100.0 * influence.sum, 100.0 * influence.sigma)) +
-         Refuted(refinement, verdict);
+                                       100.0 * influence.sum, 100.0 * influence.sigma));
 }
 
 std::string DescribeOffset(const Refinement& refinement, CheckVerdict verdict) {

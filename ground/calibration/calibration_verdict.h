@@ -13,6 +13,7 @@ namespace isotherm {
 enum class CheckVerdict : std::uint8_t {
   kOff,          ///< Not to be checked.
   kNotAssessed,  ///< The scan cannot tell.
+  kRefuted,  ///< It seems to have moved, but images that were held out do not agree better then.
   kAgrees,
   kMoved,
 };
@@ -36,7 +37,8 @@ struct CalibrationVerdict {
   /// Returns whether the thermal camera is to be calibrated again, which does not help against an
   /// offset.
   bool Moved() const;
-  /// Returns whether the same parts all agree.
+  /// Returns whether pose and delay agree, and the influence has not moved: where a scan hardly
+  /// tells it, there is little of it.
   bool Agrees() const;
 };
 
@@ -44,9 +46,16 @@ struct CalibrationVerdict {
 /// but so uncertain that it agrees with nearly any delay.
 CheckVerdict Assess(const DelayEstimate& off_by, double max_shift_s);
 
-/// The same of all parts. All but the offset have moved only if images that were held out agree
-/// better afterwards.
+/// The same of all parts. All but the offset are refuted unless images that were held out
+/// agree better afterwards.
 CalibrationVerdict Assess(const Refinement& refinement, const CheckLimits& limits);
+
+/// Says by how much both fractions of the scene's influence together differ from the calibration,
+/// with one standard deviation.
+struct FractionChange {
+  double sum = 0.0, sigma = 0.0;
+};
+FractionChange ChangeOfInfluence(const Refinement& refinement);
 
 /// A sentence about a part, without its name and end: "ok, within 0.28 px in the thermal image,
 /// uncertain by 0.26 px".

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace isotherm {
 namespace {
 
@@ -70,14 +72,44 @@ TEST(CalibrationVerdictTest, WhatIsUncertainNeitherAgreesNorHasMoved) {
   EXPECT_EQ(Assess(refinement, {}).offset, CheckVerdict::kNotAssessed);
 }
 
+TEST(CalibrationVerdictTest, InfluenceIsTheSumOfBothFractions) {
+  Refinement refinement = Right();
+  refinement.correction[kNearInfluence] = 0.05;
+  refinement.correction[kTotalInfluence] = -0.045;
+  const auto set_sigma = [&](double sigma, double correlation) {
+    refinement.covariance.block<2, 2>(kNearInfluence, kNearInfluence) << 1.0, correlation,
+        correlation, 1.0;
+    refinement.covariance.block<2, 2>(kNearInfluence, kNearInfluence) *= sigma * sigma;
+  };
+  set_sigma(0.05, -0.999);  // The sum's is 0.0022.
+  EXPECT_EQ(Assess(refinement, {}).influence, CheckVerdict::kAgrees);
+  EXPECT_EQ(Assess(refinement, {.influence = 0.004}).influence, CheckVerdict::kAgrees);
+  refinement.correction[kTotalInfluence] = -0.035;
+  EXPECT_EQ(Assess(refinement, {}).influence, CheckVerdict::kMoved);
+  EXPECT_TRUE(Assess(refinement, {}).Moved());
+  EXPECT_FALSE(Assess(refinement, {}).Agrees());
+  EXPECT_THAT(DescribeInfluence(refinement, CheckVerdict::kMoved), HasSubstr("moved by +1.5 %"));
+  set_sigma(0.05, 0.0);
+  EXPECT_EQ(Assess(refinement, {}).influence, CheckVerdict::kNotAssessed);
+  EXPECT_TRUE(Assess(refinement, {}).Agrees()) << "where it is not told, there is little of it";
+}
+
+TEST(CalibrationVerdictTest, WhatIsNoNumberIsNotTold) {
+  Refinement refinement = Right();
+  refinement.shift.sigma_px = NAN;
+  EXPECT_EQ(Assess(refinement, {}).pose, CheckVerdict::kNotAssessed);
+  refinement.shift = {.rms_px = NAN, .sigma_px = 0.1};
+  EXPECT_EQ(Assess(refinement, {}).pose, CheckVerdict::kNotAssessed);
+}
+
 TEST(CalibrationVerdictTest, WhatImagesThatWereHeldOutRefuteHasNotMoved) {
   Refinement refinement = Right();
   refinement.shift.rms_px = 2.0;
   refinement.correction[kDelay] = 0.02;
   refinement.held_out.improves = false;
   const CalibrationVerdict verdict = Assess(refinement, {});
-  EXPECT_EQ(verdict.pose, CheckVerdict::kNotAssessed);
-  EXPECT_EQ(verdict.delay, CheckVerdict::kNotAssessed);
+  EXPECT_EQ(verdict.pose, CheckVerdict::kRefuted);
+  EXPECT_EQ(verdict.delay, CheckVerdict::kRefuted);
   EXPECT_THAT(DescribePose(refinement, verdict.pose), HasSubstr("do not agree better"));
 }
 

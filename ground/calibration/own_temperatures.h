@@ -22,7 +22,10 @@ struct OwnTemperatures {
   Eigen::Vector2d ByFractions(const Eigen::Vector2d& pixel) const;
 };
 
-/// The fractions may be off the allowed ones by some hundredths.
+/// As FindOwnTemperatures takes it: neither fraction beyond what converges.
+SceneInfluence Convergent(const SceneInfluence& influence);
+
+/// `influence` is convergent; a fraction below zero is some chance.
 OwnTemperatures FindOwnTemperatures(const Image<std::uint16_t>& temperature_raw,
                                     const RadiometricScale& scale, const SceneInfluence& influence);
 

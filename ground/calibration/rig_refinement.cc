@@ -25,10 +25,10 @@ struct Level {
 // Blurred images lead from far away. Sharp ones decide: a blur is not equally wide on all of a
 // surface, which pulls the principal point by pixels.
 constexpr Level kLevels[] = {
-    {8.0, 0.06, 3000}, {4.0, 0.03, 3000}, {2.0, 0.01, 3000}, {0.0, 0.01, 30'000}};
+    {8.0, 0.06, 3000}, {4.0, 0.03, 3000}, {2.0, 0.01, 3000}, {0.0, 0.01, kFinestPoints}};
 constexpr int kMaxIterations = 12;
 // The end of the iterations, in standard deviations of the prior: where blurred images lead need
-// not be exact. Both are a fraction of what is wrong alike in the whole scan (below).
+// not be exact. The first is a fraction of what is wrong alike in the whole scan (below).
 constexpr double kConverged = 0.005, kNearEnough = 0.02;
 // Points that held-out images are compared at.
 constexpr std::size_t kHeldOutPoints = 6000;
@@ -126,6 +126,17 @@ ImageShift ShiftOf(const ScanViews& views, const Refinement& refinement) {
   return shift;
 }
 
+/// The allowed fractions nearest to those found, with their sum, which is the best told. Less than
+/// none is chance.
+SceneInfluence Allowed(const SceneInfluence& found) {
+  SceneInfluence allowed = found;
+  constexpr double kMost = SceneInfluence::kMaxFraction;
+  allowed.near_fraction = std::clamp(found.near_fraction, 0.0, kMost);
+  allowed.total_fraction = std::clamp(found.Total() - allowed.near_fraction, 0.0, kMost);
+  allowed.near_fraction = std::clamp(found.Total() - allowed.total_fraction, 0.0, kMost);
+  return allowed;
+}
+
 /// Corrects the placement step by step.
 class Refiner {
  public:
@@ -150,6 +161,7 @@ class Refiner {
     // A blur may hide what sharp images show.
     if (!is_last) return OkStatus();
     if (!settled) return settled.error();
+    if (!*settled) return NotSettled();
     return RefineWithDrift(alignment, level.points, PartOf(progress, 0.4, 1.0));
   }
 
@@ -161,6 +173,7 @@ class Refiner {
         alignment.CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
     refinement_.epoch_offset =
         LargestEpochOffset(alignment.CompareEpochs(refinement_.after, kHeldOutPoints));
+    refinement_.after.influence = Allowed(refinement_.after.influence);
     refinement_.correction = CorrectionBetween(refinement_.before, refinement_.after);
     refinement_.covariance += CommonCovariance(refinement_.after.camera, refinement_.prior_sigma);
     refinement_.covariance(kDelay, kDelay) += std::pow(DelaySigmaOfDriftAlong(), 2);
@@ -207,18 +220,16 @@ class Refiner {
                          const std::function<void(double)>& progress) {
     const double delay_variance = refinement_.covariance(kDelay, kDelay);
     const bool delay_is_told = delay_variance < 0.25 * std::pow(refinement_.prior_sigma[kDelay], 2);
+    // How everything else goes along with the delay.
+    PlacementVector by_delay = PlacementVector::Zero();
+    if (delay_variance > 0.0) by_delay = refinement_.covariance.col(kDelay) / delay_variance;
     const TrajectoryDrift drift(views_, kKnotSpacing_s, kMaxKnots);
     AlignmentPrior prior{refinement_.prior_sigma, DriftFactor(views_, drift)};
     prior.placement_sigma[kDelay] = 0.0;
     const Result<bool> settled = Settle(alignment, points, prior, drift, kConverged, progress);
     if (!settled) return settled.error();
-    if (!*settled) {
-      return FailedPrecondition(
-          fmt::format("the search does not settle within {} steps: scan for longer, to and fro, "
-                      "nearer and farther",
-                      kMaxIterations));
-    }
-    refinement_.covariance(kDelay, kDelay) = delay_variance;
+    if (!*settled) return NotSettled();
+    refinement_.covariance += delay_variance * by_delay * by_delay.transpose();
     refinement_.observed_directions += delay_is_told ? 1 : 0;
     return OkStatus();
   }
@@ -237,6 +248,13 @@ class Refiner {
   bool TurnsBack(const PlacementVector& step, const PlacementVector& last) const {
     const PlacementVector sigma = refinement_.prior_sigma.cwiseMax(1e-12);
     return step.cwiseQuotient(sigma).dot(last.cwiseQuotient(sigma)) < 0.0;
+  }
+
+  static Status NotSettled() {
+    return FailedPrecondition(
+        fmt::format("the search does not settle within {} steps: scan for longer, to and fro, "
+                    "nearer and farther",
+                    kMaxIterations));
   }
 
   static Status TooFew(const AlignmentEquations& equations) {

@@ -49,6 +49,9 @@ struct Refinement {
   bool Tells(PlacementParameter parameter) const;
 };
 
+/// Points of the surface that the last comparison takes.
+inline constexpr std::size_t kFinestPoints = 30'000;
+
 /// Sees the scan again from a placement: fills the views' camera, pose between the cameras, delay,
 /// points and visibility. `range_s` is how far the delay may be off; `progress` gets the fraction
 /// done, 0..1.

@@ -4,13 +4,6 @@
 #include "ground/scan/scan_model.h"
 
 namespace isotherm {
-namespace {
-
-// As many as the finest comparison takes (RefinePlacement).
-constexpr std::size_t kSampledPoints = 30'000;
-
-}  // namespace
-
 Result<Refinement> RefineByScan(const ScanModel& scan, const std::vector<StampedThermal>& frames,
                                 const ThermalPlacement& before, const RefinementPrior& prior,
                                 ScanViews& views, const std::function<void(double)>& progress) {
@@ -21,7 +14,7 @@ Result<Refinement> RefineByScan(const ScanModel& scan, const std::vector<Stamped
     views.T_thermal_depth = placement.T_thermal_depth;
     views.delay_s = placement.delay_s;
     views.frames = frames;
-    return AddSurface(scan, kSampledPoints, range_s, views, seen);
+    return AddSurface(scan, kFinestPoints, range_s, views, seen);
   };
   return RefinePlacement(views, before, prior, look_again, scan.pool, progress);
 }

@@ -110,7 +110,7 @@ TextureAlignment::TextureAlignment(const ScanViews& views, ThreadPool& pool)
 }
 
 void TextureAlignment::PrepareImages(const SceneInfluence& influence, double sigma_px) {
-  influence_ = influence;
+  influence_ = Convergent(influence);
   images_.assign(views_.frames.size(), {});
   const std::vector<double> distances_m = Distances();
   std::vector<double> known_m;
@@ -123,7 +123,7 @@ void TextureAlignment::PrepareImages(const SceneInfluence& influence, double sig
     const auto i = static_cast<std::size_t>(index);
     if (!(distances_m[i] > 0.0)) return;
     const StampedThermal& frame = views_.frames[i];
-    images_[i] = FindOwnTemperatures(*frame.temperature_raw, frame.scale, influence);
+    images_[i] = FindOwnTemperatures(*frame.temperature_raw, frame.scale, influence_);
     if (sigma_px == 0.0) return;
     Image<std::uint16_t>& image = images_[i].temperature_raw;
     image = BlurKnownPixels(
@@ -192,6 +192,7 @@ void TextureAlignment::Gather(const TexturePoint& point, const std::vector<std::
         R_thermal_depth * (geometry.T_depth_world * point.p_world +
                            ReadAfterStamp(views_, placement.camera, at_stamp) * velocity_depth);
     const Eigen::Vector3d p_thermal = turned + placement.T_thermal_depth.translation();
+    if (p_thermal.z() < kMinDepth_m) continue;
     const ProjectionDerivatives projection = ProjectWithDerivatives(placement.camera, p_thermal);
     const auto seen =
         SampleThermal(image.temperature_raw, views_.frames[i].scale, projection.pixel);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -124,28 +123,24 @@ class RefineRun {
   Status status_;
 };
 
-void SetInfluence(const Refinement& refinement, RigCalibration& rig) {
+void SetInfluence(const SceneInfluence& found, RigCalibration& rig) {
+  const bool is_calibrated = rig.thermal_sensor().has_scene_influence();
+  if (!is_calibrated && found.Total() == 0.0) return;
   SceneInfluenceProperties& influence = *rig.mutable_thermal_sensor()->mutable_scene_influence();
-  const SceneInfluence& found = refinement.after.influence;
-  // Less than none is chance.
-  const auto within = [](double fraction) {
-    return std::clamp(fraction, 0.0, SceneInfluence::kMaxFraction);
-  };
-  influence.set_near_fraction(within(found.near_fraction));
+  influence.set_near_fraction(found.near_fraction);
   influence.set_near_sigma_px(found.near_sigma_px);
-  influence.set_total_fraction(within(found.total_fraction));
+  influence.set_total_fraction(found.total_fraction);
 }
 
 /// Changes what was refined, and says how.
 void SetRefined(const RefineArguments& arguments, const RecordingRefinement& refined,
-                const CalibrationVerdict& verdict, RigCalibration& rig) {
+                RigCalibration& rig) {
   const Refinement& r = refined.refinement;
   rig.mutable_thermal()->set_cx(r.after.camera.cx);
   rig.mutable_thermal()->set_cy(r.after.camera.cy);
   *rig.mutable_t_thermal_depth() = ToProto(r.after.T_thermal_depth);
   rig.set_thermal_delay_s(refined.DelayAfter());
-  // One that is as good as the calibrated one leaves what the file says.
-  if (verdict.influence == CheckVerdict::kMoved) SetInfluence(r, rig);
+  SetInfluence(r.after.influence, rig);
   CalibrationRecord record;
   record.set_date(Today());
   record.set_method(fmt::format("{}, calibrate refine", SoftwareName()));
@@ -162,8 +157,7 @@ void SetRefined(const RefineArguments& arguments, const RecordingRefinement& ref
   *rig.mutable_pose_calibration() = record;
 }
 
-Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined,
-                const CalibrationVerdict& verdict) {
+Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined) {
   const std::string& path = arguments.apply ? arguments.rig : arguments.output;
   std::error_code error;
   const bool was_there = std::filesystem::exists(path, error);
@@ -173,7 +167,7 @@ Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& ref
     whole.Clear();
     ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.rig, whole));
   }
-  SetRefined(arguments, refined, verdict, whole);
+  SetRefined(arguments, refined, whole);
   ISOTHERM_RETURN_IF_ERROR(EditRigFile(path, [&](RigCalibration& rig) {
     rig = whole;
     return OkStatus();
@@ -213,7 +207,7 @@ int RunRefine(const RefineArguments& arguments) {
     fmt::print("nothing is written: --apply changes the file of --rig, --output writes another\n");
     return 0;
   }
-  const Status written = WriteRig(arguments, run.refined(), run.verdict());
+  const Status written = WriteRig(arguments, run.refined());
   return written.ok() ? 0 : Fail(written);
 }
 

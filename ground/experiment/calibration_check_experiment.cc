@@ -76,8 +76,9 @@ SimulationOptions CamerasOf(int scan) {
 
 Rig Disturbed(const Rig& rig, const Disturbance& by, int scan) {
   Draws draw(1000 + scan);
-  const Eigen::Vector3d axis =
-      Eigen::Vector3d(draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)).normalized();
+  Eigen::Vector3d axis;
+  for (double& along : axis) along = draw(-1.0, 1.0);
+  axis.normalize();
   Rig disturbed = rig;
   disturbed.T_thermal_depth->linear() =
       Eigen::AngleAxisd(by.rotation_deg * kRadPerDeg, axis).toRotationMatrix() *
@@ -140,6 +141,27 @@ void AddFigures(const CalibrationCheckReport& report, std::vector<double>& row) 
                          kMsPerS * r.Sigma(kDelay)});
 }
 
+/// Counts what ten scans said.
+struct Tally {
+  int right_told = 0, false_alarms = 0, found = 0, pose_found = 0, found_hardly_moved = 0;
+  double delay_squares = 0.0;  ///< Of the right scans' errors over their uncertainties.
+
+  void Add(const Checked& checked) {
+    const auto is_moved = [](const CalibrationCheckReport& report) {
+      return report.verdict.pose == CheckVerdict::kMoved ||
+             report.verdict.delay == CheckVerdict::kMoved;
+    };
+    false_alarms += checked.right.verdict.Moved() ? 1 : 0;
+    found += is_moved(checked.moved) ? 1 : 0;
+    pose_found += checked.moved.verdict.pose == CheckVerdict::kMoved ? 1 : 0;
+    found_hardly_moved += is_moved(checked.hardly_moved) ? 1 : 0;
+    const auto& right = checked.right.refinement;
+    if (!right) return;
+    ++right_told;
+    delay_squares += std::pow(right->correction[kDelay] / right->Sigma(kDelay), 2);
+  }
+};
+
 }  // namespace
 
 Result<ExperimentReport> RunCalibrationCheckExperiment(ThreadPool& pool) {
@@ -147,35 +169,33 @@ Result<ExperimentReport> RunCalibrationCheckExperiment(ThreadPool& pool) {
   report.table.rows_are = "scan";
   report.table.columns = {"right: shift [px]", "sigma [px]", "delay [ms]", "sigma [ms]",
                           "moved: shift [px]", "sigma [px]", "delay [ms]", "sigma [ms]"};
-  int false_alarms = 0, found = 0, found_hardly_moved = 0;
-  double squares = 0.0, told = 0.0;
+  Tally tally;
   for (int scan = 1; scan <= kScans; ++scan) {
     const Result<Checked> checked = Check(scan, pool);
     if (!checked) return Err(checked.error());
+    tally.Add(*checked);
     std::vector<double> row;
     AddFigures(checked->right, row);
     AddFigures(checked->moved, row);
     report.table.rows.push_back({fmt::format("{}{}{}", scan, scan % 2 == 0 ? ", to and fro" : "",
                                              scan % 3 == 0 ? ", gaps in depth" : ""),
                                  row});
-    false_alarms += checked->right.verdict.Moved() ? 1 : 0;
-    found += checked->moved.verdict.Moved() ? 1 : 0;
-    found_hardly_moved += checked->hardly_moved.verdict.Moved() ? 1 : 0;
-    if (const auto& right = checked->right.refinement) {
-      squares += std::pow(right->correction[kDelay] / right->Sigma(kDelay), 2);
-      told += 1.0;
-    }
   }
   using Sense = Requirement::Sense;
-  const Requirement finds = {"scans of ten that find 0.2 degrees and 5 ms",
-                             static_cast<double>(found), Sense::kAtLeast, 9.0, ""};
-  report.requirements = {finds,
-                         NegativeControl(finds, "scans of ten that find 0.02 degrees and 0.5 ms",
-                                         static_cast<double>(found_hardly_moved)),
-                         {"false alarms in ten right scans", static_cast<double>(false_alarms),
-                          Sense::kAtMost, 0.0, ""},
-                         {"delay's error over its uncertainty, root mean square",
-                          std::sqrt(squares / told), Sense::kAtMost, 1.3, ""}};
+  const Requirement finds = {"scans of ten that find that 0.2 degrees and 5 ms are wrong",
+                             static_cast<double>(tally.found), Sense::kAtLeast, 9.0, ""};
+  report.requirements = {
+      finds,
+      NegativeControl(finds, "scans of ten that find 0.02 degrees and 0.5 ms",
+                      static_cast<double>(tally.found_hardly_moved)),
+      {"right scans of ten that tell", static_cast<double>(tally.right_told), Sense::kAtLeast, 9.0,
+       ""},
+      {"false alarms in ten right scans", static_cast<double>(tally.false_alarms), Sense::kAtMost,
+       0.0, ""},
+      {"delay's error over its uncertainty, root mean square",
+       std::sqrt(tally.delay_squares / tally.right_told), Sense::kAtMost, 1.3, ""}};
+  report.table.rows.push_back({fmt::format("pose found in {} of {}", tally.pose_found, kScans),
+                               std::vector<double>(report.table.columns.size(), NAN)});
   return report;
 }
 

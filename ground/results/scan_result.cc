@@ -132,7 +132,10 @@ Json DescribeCalibration(const CalibrationCheckReport& report) {
                   {"off_by_px", r.shift.rms_px},
                   {"sigma_px", r.shift.sigma_px}};
   json["delay"] = DescribeDelay(report);
+  const FractionChange influence = ChangeOfInfluence(r);
   json["influence"] = {{"verdict", ToString(report.verdict.influence)},
+                       {"off_by", influence.sum},
+                       {"sigma", influence.sigma},
                        {"near_fraction", r.after.influence.near_fraction},
                        {"total_fraction", r.after.influence.total_fraction}};
   json["offset"] = {{"verdict", ToString(report.verdict.offset)}};

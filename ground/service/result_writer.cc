@@ -136,7 +136,10 @@ Json ResultWriter::FinishScan(EndedScan& ended) {
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
   scan.FinishFrames([&](double) { go_on(); });
   const CalibrationCheckReport calibration = scan.CheckCalibration([&] { go_on(); });
-  board_.calibration.Set(WhatHasMoved(calibration));
+  // A scan that cannot tell does not take back what another one told.
+  if (const CheckVerdict verdict = Overall(calibration);
+      verdict == CheckVerdict::kMoved || verdict == CheckVerdict::kAgrees)
+    board_.calibration.Set(WhatHasMoved(calibration));
   go_on();
   // The summary says how much the recording has; its last chunk is being written meanwhile.
   const RecordingProgress recording = ended.start.recording->WaitUntilClosed(kClosingPatience);

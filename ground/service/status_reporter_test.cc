@@ -136,9 +136,9 @@ TEST(StatusReporterTest, F31AMissingOutputFolderIsSaidBeforeAScanToo) {
 
 TEST(StatusReporterTest, ACalibrationThatHasMovedIsSaid) {
   GroundSituation situation;
-  situation.moved_calibration = "the thermal camera's calibration has moved (pose moved by 1.2 px)";
-  EXPECT_THAT(StatusText(situation), HasSubstr("CALIBRATION: the thermal camera's calibration has "
-                                               "moved"));
+  situation.moved_calibration =
+      "the thermal camera is not as it was calibrated (pose moved by 1.2 px)";
+  EXPECT_THAT(StatusText(situation), HasSubstr("CALIBRATION: the thermal camera is not as"));
 }
 
 TEST(StatusReporterTest, F28AdviceThatIsOldWhenItArrivesIsSaid) {

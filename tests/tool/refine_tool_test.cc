@@ -130,7 +130,8 @@ TEST_F(RefineToolTest, WhatWasDisturbedIsFoundAgain) {
                                   HasSubstr("new.textproto: written")));
   EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), before);
   ExpectNear(LoadRigCalibration(folder_ / "new.textproto").value(), right, 0.2);
-  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), HasSubstr("rx ry rz tx ty tz delay cx cy near total"));
+  EXPECT_THAT(ReadAll(folder_ / "new.textproto"),
+              HasSubstr("rx ry rz tx ty tz delay cx cy near total"));
   EXPECT_EQ(ReadAll(folder_ / "both.png").substr(1, 3), "PNG");
   const nlohmann::json all = nlohmann::json::parse(ReadAll(folder_ / "all.json"));
   EXPECT_EQ(all["pose"], "moved");
@@ -161,7 +162,7 @@ TEST_F(RefineToolTest, CheckFindsLittleAndIsNotAlarmedByGaps) {
   const Rig right = Recorded("scan.mcap");
   CopyWithGaps("scan.mcap", "gaps.mcap");
   const Outcome gaps = Run("calibrate check gaps.mcap");
-  EXPECT_NE(gaps.status, 1) << gaps.out;
+  EXPECT_TRUE(gaps.status == 0 || gaps.status == 2) << gaps.out << gaps.err;
   EXPECT_THAT(gaps.out, AllOf(HasSubstr("pose"), HasSubstr("delay"), Not(HasSubstr("moved"))));
 
   Rig moved = TurnedBy(right, 0.2, {1.0, 1.0, 0.5});
