@@ -266,7 +266,8 @@ void AddCommonArguments(CLI::App& command, RefineArguments& arguments) {
 
 void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
   CLI::App* command = calibrate.add_subcommand(
-      "refine", "Pose, principal point and delay of the thermal camera from any scan");
+      "refine",
+      "Pose, principal point, delay and scene influence of the thermal camera from any scan");
   auto arguments = std::make_shared<RefineArguments>();
   AddCommonArguments(*command, *arguments);
   CLI::Option* rig_option = command->add_option("--rig", arguments->rig,
@@ -282,7 +283,8 @@ void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body) {
 
 void AddCalibrateCheckCommand(CLI::App& calibrate, CommandBody& body) {
   CLI::App* command = calibrate.add_subcommand(
-      "check", "Whether pose and delay of the thermal camera are still as calibrated");
+      "check",
+      "Whether pose, delay and scene influence of the thermal camera are still as calibrated");
   auto arguments = std::make_shared<RefineArguments>();
   AddCommonArguments(*command, *arguments);
   command->add_option("--rig", arguments->rig, "Calibration to check; without, the recording's");

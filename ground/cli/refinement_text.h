@@ -15,7 +15,8 @@ std::string RefinementText(const RecordingRefinement& refined);
 /// A line for each part of the calibration: it is right, has moved, or cannot be told, and why.
 std::string CheckText(const RecordingRefinement& refined, const CalibrationVerdict& verdict);
 
-/// The same, and the covariance of the corrections in radians, metres, seconds and pixels.
+/// The same, and the covariance of the corrections in radians, metres, seconds, pixels and
+/// fractions.
 Json RefinementJson(const RecordingRefinement& refined, const CalibrationVerdict& verdict);
 
 /// The two renderings beside each other.

@@ -50,7 +50,7 @@ class LiveScan {
   void Add(const ExternalOdometrySample& sample);
   /// Processes what the assembler still holds back.
   void FinishFrames(const std::function<void(double fraction)>& progress = {});
-  /// Says whether pose and delay of the thermal camera are still as calibrated, once the frames are
+  /// Says whether the thermal camera is still as it was calibrated, once the frames are
   /// finished (CHECK).
   CalibrationCheckReport CheckCalibration(const std::function<void()>& progress = {});
 
