@@ -130,10 +130,10 @@ ImageShift ShiftOf(const ScanViews& views, const Refinement& refinement) {
 /// none is chance.
 SceneInfluence Allowed(const SceneInfluence& found) {
   SceneInfluence allowed = found;
-  constexpr double kMost = SceneInfluence::kMaxFraction;
-  allowed.near_fraction = std::clamp(found.near_fraction, 0.0, kMost);
-  allowed.total_fraction = std::clamp(found.Total() - allowed.near_fraction, 0.0, kMost);
-  allowed.near_fraction = std::clamp(found.Total() - allowed.total_fraction, 0.0, kMost);
+  constexpr double kMax = SceneInfluence::kMaxFraction;
+  allowed.near_fraction = std::clamp(found.near_fraction, 0.0, kMax);
+  allowed.total_fraction = std::clamp(found.Total() - allowed.near_fraction, 0.0, kMax);
+  allowed.near_fraction = std::clamp(found.Total() - allowed.total_fraction, 0.0, kMax);
   return allowed;
 }
 

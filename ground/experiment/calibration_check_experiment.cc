@@ -144,7 +144,7 @@ void AddFigures(const CalibrationCheckReport& report, std::vector<double>& row) 
 /// Counts what ten scans said.
 struct Tally {
   int right_told = 0, false_alarms = 0, found = 0, pose_found = 0, found_hardly_moved = 0;
-  double delay_squares = 0.0;  ///< Of the right scans' errors over their uncertainties.
+  double delay_squares = 0.0;  ///< Sums the right scans' errors over their uncertainties.
 
   void Add(const Checked& checked) {
     const auto is_moved = [](const CalibrationCheckReport& report) {
