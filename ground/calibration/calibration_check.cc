@@ -122,13 +122,14 @@ void CalibrationCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) 
 }
 
 CalibrationCheckReport CalibrationCheck::Finish(const ScanModel& scan,
-                                                const std::function<void(double)>& progress) const {
+                                                const std::function<void(double)>& progress,
+                                                const std::stop_token& stop) const {
   CalibrationCheckReport report;
   report.calibrated_delay_s = calibrated_delay_s_;
   report.is_on = options_.expert().enabled();
   if (!report.is_on) return report;
   const auto start = std::chrono::steady_clock::now();
-  Result<Refinement> refinement = Refine(scan, progress);
+  Result<Refinement> refinement = Refine(scan, progress, stop);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   report.elapsed_s = elapsed.count();
   if (!refinement) {
@@ -145,13 +146,14 @@ CalibrationCheckReport CalibrationCheck::Finish(const ScanModel& scan,
 }
 
 Result<Refinement> CalibrationCheck::Refine(const ScanModel& scan,
-                                            const std::function<void(double)>& progress) const {
+                                            const std::function<void(double)>& progress,
+                                            const std::stop_token& stop) const {
   if (Status status = CheckThermalFusion(rig_); !status.ok()) return Err(status);
   // The stamps contain the delay.
   const ThermalPlacement before{*rig_.thermal, *rig_.T_thermal_depth, 0.0,
                                 rig_.thermal_sensor.scene_influence};
   ScanViews views;
-  return RefineByScan(scan, selection_.frames(), before, {}, views, progress);
+  return RefineByScan(scan, selection_.frames(), before, {}, views, progress, stop);
 }
 
 }  // namespace isotherm

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -56,12 +57,13 @@ class CalibrationCheck {
 
   /// After the pipeline's Finish. Logs a warning if something has moved. `progress` gets the
   /// fraction done, 0..1.
-  CalibrationCheckReport Finish(const ScanModel& scan,
-                                const std::function<void(double)>& progress) const;
+  /// Gives up soon after `stop` was requested.
+  CalibrationCheckReport Finish(const ScanModel& scan, const std::function<void(double)>& progress,
+                                const std::stop_token& stop = {}) const;
 
  private:
-  Result<Refinement> Refine(const ScanModel& scan,
-                            const std::function<void(double)>& progress) const;
+  Result<Refinement> Refine(const ScanModel& scan, const std::function<void(double)>& progress,
+                            const std::stop_token& stop) const;
 
   const CalibrationCheckOptions options_;
   const Rig rig_;

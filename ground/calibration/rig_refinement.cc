@@ -141,8 +141,8 @@ SceneInfluence Allowed(const SceneInfluence& found) {
 class Refiner {
  public:
   Refiner(const ScanViews& views, const ThermalPlacement& before, const RefinementPrior& prior,
-          ThreadPool& pool)
-      : views_(views), pool_(pool) {
+          ThreadPool& pool, const std::stop_token& stop)
+      : views_(views), pool_(pool), stop_(stop) {
     refinement_.before = refinement_.after = before;
     refinement_.prior_sigma = SigmasOf(prior);
   }
@@ -158,6 +158,7 @@ class Refiner {
     const Result<bool> settled =
         Settle(alignment, level.points, prior, TrajectoryDrift(),
                is_last ? kConverged : kNearEnough, PartOf(progress, 0.0, is_last ? 0.4 : 1.0));
+    if (stop_.stop_requested()) return Unavailable("told to stop");
     // A blur may hide what sharp images show.
     if (!is_last) return OkStatus();
     if (!settled) return settled.error();
@@ -193,6 +194,7 @@ class Refiner {
     AlignmentStep step;
     PlacementVector last_step = PlacementVector::Zero();
     for (int i = 0; i < kMaxIterations; ++i) {
+      if (stop_.stop_requested()) return Err(Unavailable("told to stop"));
       const AlignmentEquations equations = alignment.Linearize(refinement_.after, drift, points);
       if (equations.textured_points < kMinTexturedPoints) return Err(TooFew(equations));
       step =
@@ -267,6 +269,7 @@ class Refiner {
 
   const ScanViews& views_;
   ThreadPool& pool_;
+  const std::stop_token& stop_;
   Refinement refinement_;
 };
 
@@ -282,8 +285,9 @@ bool Refinement::Tells(PlacementParameter parameter) const {
 
 Result<Refinement> RefinePlacement(const ScanViews& views, const ThermalPlacement& before,
                                    const RefinementPrior& prior, const LookAgain& look_again,
-                                   ThreadPool& pool, const std::function<void(double)>& progress) {
-  Refiner refiner(views, before, prior, pool);
+                                   ThreadPool& pool, const std::function<void(double)>& progress,
+                                   const std::stop_token& stop) {
+  Refiner refiner(views, before, prior, pool, stop);
   constexpr double kLevelCount = std::size(kLevels);
   double done = 0.0;
   for (const Level& level : kLevels) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
@@ -60,10 +61,11 @@ using LookAgain = std::function<Status(const ThermalPlacement& placement, double
 
 /// Finds the placement of the thermal camera at which the images of `views` agree best about the
 /// surface, from blurred to sharp images, beginning at `before`; at last together with what the
-/// tracked poses are off by. A third of the scan is held out. Fails and says what the scan lacks.
-/// Deterministic. `progress` gets the fraction done, 0..1.
+/// tracked poses are off by. A third of the scan is held out. Fails and says what the scan lacks,
+/// or soon after `stop` was requested. Deterministic. `progress` gets the fraction done, 0..1.
 Result<Refinement> RefinePlacement(const ScanViews& views, const ThermalPlacement& before,
                                    const RefinementPrior& prior, const LookAgain& look_again,
-                                   ThreadPool& pool, const std::function<void(double)>& progress);
+                                   ThreadPool& pool, const std::function<void(double)>& progress,
+                                   const std::stop_token& stop = {});
 
 }  // namespace isotherm

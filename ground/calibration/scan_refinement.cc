@@ -6,7 +6,8 @@
 namespace isotherm {
 Result<Refinement> RefineByScan(const ScanModel& scan, const std::vector<StampedThermal>& frames,
                                 const ThermalPlacement& before, const RefinementPrior& prior,
-                                ScanViews& views, const std::function<void(double)>& progress) {
+                                ScanViews& views, const std::function<void(double)>& progress,
+                                const std::stop_token& stop) {
   views.row_readout_s = scan.rig.thermal_sensor.row_readout_s;
   const LookAgain look_again = [&](const ThermalPlacement& placement, double range_s,
                                    const std::function<void(double)>& seen) {
@@ -16,7 +17,7 @@ Result<Refinement> RefineByScan(const ScanModel& scan, const std::vector<Stamped
     views.frames = frames;
     return AddSurface(scan, kFinestPoints, range_s, views, seen);
   };
-  return RefinePlacement(views, before, prior, look_again, scan.pool, progress);
+  return RefinePlacement(views, before, prior, look_again, scan.pool, progress, stop);
 }
 
 }  // namespace isotherm

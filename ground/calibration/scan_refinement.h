@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <vector>
 
 #include "common/base/status.h"
@@ -16,6 +17,7 @@ struct ScanModel;
 /// what the scan lacks. `progress` gets the fraction done, 0..1.
 Result<Refinement> RefineByScan(const ScanModel& scan, const std::vector<StampedThermal>& frames,
                                 const ThermalPlacement& before, const RefinementPrior& prior,
-                                ScanViews& views, const std::function<void(double)>& progress);
+                                ScanViews& views, const std::function<void(double)>& progress,
+                                const std::stop_token& stop = {});
 
 }  // namespace isotherm

@@ -96,20 +96,22 @@ BehindCounts LiveScan::behind() const {
           .depth_frames = counts.depth_behind};
 }
 
-CalibrationCheckReport LiveScan::CheckCalibration(const std::function<void()>& progress) {
+CalibrationCheckReport LiveScan::CheckCalibration(const std::function<void()>& progress,
+                                                  const std::stop_token& stop) {
   CHECK(processor_after_.has_value());
   // A check of several seconds (docs/calibration.md) says once that it is at work; a shorter one
   // says nothing.
   constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   const SteadyTime start = clock_.SteadyNow();
   bool told = false;
-  return calibration_check_.Finish(model(), [&](double fraction) {
+  const auto say = [&](double fraction) {
     if (progress) progress();
     if (told || clock_.SteadyNow() - start < kSilence) return;
     told = true;
     LOG(Ground, Info) << fmt::format(
         "checking the calibration of the thermal camera, {:.0f} % done", 100.0 * fraction);
-  });
+  };
+  return calibration_check_.Finish(model(), say, stop);
 }
 
 void LiveScan::NoteQueueTime(const void* frame) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <variant>
 
 #include "common/base/processor_time.h"
@@ -52,7 +53,8 @@ class LiveScan {
   void FinishFrames(const std::function<void(double fraction)>& progress = {});
   /// Says whether the thermal camera is still as it was calibrated, once the frames are
   /// finished (CHECK).
-  CalibrationCheckReport CheckCalibration(const std::function<void()>& progress = {});
+  CalibrationCheckReport CheckCalibration(const std::function<void()>& progress = {},
+                                          const std::stop_token& stop = {});
 
   /// Returns feedback on the newest depth frame if a message is due (live.expert.feedback_hz, by
   /// capture time).

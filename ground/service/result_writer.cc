@@ -115,7 +115,7 @@ std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
 void ResultWriter::Run(const std::stop_token& stop) {
   while (std::optional<EndedScan> ended = Take(stop)) {
     progress_.Busy(clock_.SteadyNow());
-    const Json stats = FinishScan(*ended);
+    const Json stats = FinishScan(*ended, stop);
     handlers_.written(std::move(ended->scan));
     if (!stats.is_null()) {
       Complete(ended->start, stats, stop);
@@ -130,12 +130,12 @@ void ResultWriter::Run(const std::stop_token& stop) {
   }
 }
 
-Json ResultWriter::FinishScan(EndedScan& ended) {
+Json ResultWriter::FinishScan(EndedScan& ended, const std::stop_token& stop) {
   if (!ended.scan) return nullptr;  // Recorded only.
   LiveScan& scan = *ended.scan;
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
   scan.FinishFrames([&](double) { go_on(); });
-  const CalibrationCheckReport calibration = scan.CheckCalibration([&] { go_on(); });
+  const CalibrationCheckReport calibration = scan.CheckCalibration([&] { go_on(); }, stop);
   // A scan that cannot tell does not take back what another one told.
   if (const CheckVerdict verdict = Overall(calibration);
       verdict == CheckVerdict::kMoved || verdict == CheckVerdict::kAgrees)

@@ -70,7 +70,7 @@ class ResultWriter {
   std::optional<EndedScan> Take(const std::stop_token& stop);
   /// Processes a scan's last frames, checks its delay and writes its results.
   /// Returns its statistics; null if there are no results.
-  Json FinishScan(EndedScan& ended);
+  Json FinishScan(EndedScan& ended, const std::stop_token& stop);
   /// Brings in what came too late for the model, and gives up when another scan waits.
   void Complete(const SessionStart& start, const Json& stats, const std::stop_token& stop);
   /// Writes into the scan's folder or, if that fails, into another. Returns the summary.
