@@ -212,7 +212,8 @@ function(isotherm_test)
       set_tests_properties(${test} PROPERTIES
         ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
     endif()
-    if(ARG_LABELS MATCHES "integration|scan")  # The longest begin first, so that none is left alone at the end.
+    # The longest begin first, so that none is left alone at the end.
+    if(ARG_LABELS MATCHES "integration|scan" OR ARG_TIMEOUT GREATER_EQUAL 300)
       set_tests_properties(${test} PROPERTIES COST ${ARG_TIMEOUT})
     endif()
   endforeach()

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace isotherm {
@@ -104,14 +105,16 @@ AlignmentStep SolveAlignment(const AlignmentEquations& equations, const Alignmen
     const PlacementVector direction = directions.eigenvectors().col(i);
     const double told = directions.eigenvalues()[i];
     const bool observed = told >= kMinInformation;
-    covariance += (observed ? 1.0 / (told + 1.0) : 1.0) * direction * direction.transpose();
     // Along the others, back to where the prior is.
-    placement -= observed ? direction.dot(reduced.gradient + so_far) / (told + 1.0) * direction
-                          : direction.dot(so_far) * direction;
+    const double sigma = observed ? 1.0 / std::sqrt(told + 1.0) : 1.0;
+    const double by =
+        observed ? direction.dot(reduced.gradient + so_far) * sigma * sigma : direction.dot(so_far);
+    placement -= by * direction;
+    covariance += sigma * sigma * direction * direction.transpose();
+    step.in_sigmas = std::hypot(step.in_sigmas, by / sigma);
     step.observed_directions += observed ? 1 : 0;
   }
-  step.length = placement.norm();
-  placement *= std::min(1.0, 1.0 / std::max(step.length, 1e-12));
+  placement *= std::min(1.0, 1.0 / std::max(placement.norm(), 1e-12));
   step.placement = prior.placement_sigma.cwiseProduct(placement);
   step.drift =
       prior.drift_factor * (reduced.drift_at_rest + reduced.drift_by_placement * placement);

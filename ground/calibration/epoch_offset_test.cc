@@ -15,12 +15,12 @@ constexpr double kNoise_k = 0.05;
 std::vector<PlaceDifference> Places(std::uint8_t before, std::uint8_t after, double kelvin) {
   std::vector<PlaceDifference> places;
   const std::uint64_t stream = NoiseStream(7, before, after);
-  for (int i = 0; i < 3600; ++i) {
-    places.push_back({before,
-                      after,
-                      {0.01 * (i % 60) + 0.005, 0.01 * (i / 60) + 0.005, 0.55},
-                      kelvin + kNoise_k * NormalNoise(stream, static_cast<std::uint64_t>(i))});
-  }
+  for (int row = 0; row < 60; ++row)
+    for (int column = 0; column < 60; ++column)
+      places.push_back({before,
+                        after,
+                        {0.01 * column + 0.005, 0.01 * row + 0.005, 0.55},
+                        kelvin + kNoise_k * NormalNoise(stream, places.size())});
   return places;
 }
 

@@ -27,9 +27,11 @@ struct Level {
 constexpr Level kLevels[] = {
     {8.0, 0.06, 3000}, {4.0, 0.03, 3000}, {2.0, 0.01, 3000}, {0.0, 0.01, kFinestPoints}};
 constexpr int kMaxIterations = 12;
-// The end of the iterations, in standard deviations of the prior: where blurred images lead need
-// not be exact. The first is a fraction of what is wrong alike in the whole scan (below).
-constexpr double kConverged = 0.005, kNearEnough = 0.02;
+// The end of the iterations: the step over what the placement is uncertain by. Where blurred images
+// lead need not be exact, nor what goes to and fro at the end, as points come to be compared and
+// cease to be: an error of half a standard deviation in eleven values adds a fortieth to the
+// variance.
+constexpr double kConverged = 0.2, kNearEnough = 0.5;
 // Points that held-out images are compared at.
 constexpr std::size_t kHeldOutPoints = 6000;
 // Fewer points with a gradient in temperature are an edge or two, which leave most directions open.
@@ -210,10 +212,9 @@ class Refiner {
       drift.Add(step.drift);
       if (progress) progress((i + 1.0) / kMaxIterations);
       // The drift follows the placement.
-      if (step.length < converged && i > 0) return true;
+      if (step.in_sigmas < converged && i > 0) return true;
     }
-    // It may go to and fro, as points come to be compared and cease to be.
-    return step.length < kNearEnough;
+    return step.in_sigmas < kNearEnough;
   }
 
   /// Once more, together with what the tracked poses drift by. The delay stays: a drift along the
