@@ -72,6 +72,8 @@ Doubts DoubtsAboutRecords(const RigCalibration& rig, std::chrono::sys_days today
                         "calibrate it again, `isotherm calibrate depth`"};
   constexpr Part kPose{"the pose between the cameras",
                        "see whether it still fits, `isotherm calibrate check RECORDING`"};
+  constexpr Part kDepthBias{"the depth camera's distances",
+                            "calibrate them again, `isotherm calibrate depth-bias`"};
   constexpr Part kAll{"the rig", "see whether it still fits, `isotherm calibrate check RECORDING`"};
   Doubts doubts;
   bool has_records = false;
@@ -85,6 +87,7 @@ Doubts DoubtsAboutRecords(const RigCalibration& rig, std::chrono::sys_days today
   add(kDepth, rig.has_depth_calibration(), rig.depth_calibration());
   add(kPose, rig.has_pose_calibration(), rig.pose_calibration());
   if (!has_records) AddAge(kAll, rig.date(), today, limits, doubts);
+  add(kDepthBias, rig.has_depth_bias_calibration(), rig.depth_bias_calibration());
   return doubts;
 }
 

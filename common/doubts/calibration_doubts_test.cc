@@ -57,6 +57,8 @@ TEST(CalibrationDoubtsTest, EachRecordCounts) {
 TEST(CalibrationDoubtsTest, WithoutRecordsTheFilesOwnDateCounts) {
   RigCalibration rig;
   rig.set_date("2020-01-01");
+  // That of distances says nothing of where the cameras are.
+  rig.mutable_depth_bias_calibration()->set_date("2026-03-01");
   EXPECT_THAT(DoubtsAboutRecords(rig, kToday, {}), ElementsAre(HasSubstr("the rig is 2281 days")));
   EXPECT_THAT(DoubtsAboutRecords(RigCalibration(), kToday, {}), IsEmpty());
 }

@@ -77,11 +77,28 @@ Transform ToProto(const RigidTransform& transform) {
   return t;
 }
 
+DepthBias FromProto(const DepthBiasProperties& bias) {
+  return {.columns = bias.columns(),
+          .rows = bias.rows(),
+          .distances_m = {bias.distance_m().begin(), bias.distance_m().end()},
+          .multipliers = {bias.multiplier().begin(), bias.multiplier().end()}};
+}
+
 DepthSensorModel FromProto(const DepthSensorProperties& sensor) {
   return {.near_range_m = sensor.near_range_m(),
           .min_depth_m = sensor.min_depth_m(),
           .max_depth_m = sensor.max_depth_m(),
-          .noise_at_1m_m = sensor.noise_at_1m_m()};
+          .noise_at_1m_m = sensor.noise_at_1m_m(),
+          .bias = FromProto(sensor.bias())};
+}
+
+DepthBiasProperties ToProto(const DepthBias& bias) {
+  DepthBiasProperties properties;
+  properties.set_columns(bias.columns);
+  properties.set_rows(bias.rows);
+  properties.mutable_distance_m()->Assign(bias.distances_m.begin(), bias.distances_m.end());
+  properties.mutable_multiplier()->Assign(bias.multipliers.begin(), bias.multipliers.end());
+  return properties;
 }
 
 DepthSensorProperties ToProto(const DepthSensorModel& sensor) {
@@ -90,6 +107,7 @@ DepthSensorProperties ToProto(const DepthSensorModel& sensor) {
   properties.set_min_depth_m(sensor.min_depth_m);
   properties.set_max_depth_m(sensor.max_depth_m);
   properties.set_noise_at_1m_m(sensor.noise_at_1m_m);
+  if (!sensor.bias.empty()) *properties.mutable_bias() = ToProto(sensor.bias);
   return properties;
 }
 

@@ -91,6 +91,20 @@ TEST(RigCalibrationTest, SensorsAreReadInMetresAndWrittenBack) {
 }
 
 /// A file from before these fields existed means what the options' defaults were then.
+TEST(RigCalibrationTest, ADepthBiasIsReadAndWrittenBack) {
+  const std::string text = std::string(kRigText) + R"(
+depth_sensor { bias { columns: 2 rows: 2 distance_m: 0.5 multiplier: [1.0, 1.01, 0.99, 1.02] } })";
+  const Result<Rig> rig = ParseRigCalibration(text, "rig.textproto");
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_NEAR(rig->depth_sensor.bias.At(1.0, 0.0, 0.7), 1.01, 1e-6);
+  const Result<Rig> again = ParseRigCalibration(ToText(*rig), "second");
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_EQ(again->depth_sensor.bias.multipliers, rig->depth_sensor.bias.multipliers);
+  EXPECT_EQ(again->depth_sensor.bias.distances_m, rig->depth_sensor.bias.distances_m);
+  EXPECT_THAT(RigError(ReplaceFirst(text, "1.02]", "1.02, 1.0]")),
+              AllOf(HasSubstr("rig.textproto"), HasSubstr("depth_sensor.bias.multiplier")));
+}
+
 TEST(RigCalibrationTest, ARigFileWithoutSensorsHasThoseOfBefore) {
   const Rig rig = ParseRigCalibration(kRigText, "rig").value();
   EXPECT_EQ(rig.depth_sensor.near_range_m, 0.35);

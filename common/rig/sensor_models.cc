@@ -44,7 +44,7 @@ Status Validate(const DepthSensorModel& sensor) {
         fmt::format("depth_sensor.noise_at_1m_m must be above 0 and at most 1 m, got {}",
                     sensor.noise_at_1m_m));
   }
-  return OkStatus();
+  return Validate(sensor.bias);
 }
 
 Status Validate(const ThermalSensorModel& sensor) {

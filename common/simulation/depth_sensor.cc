@@ -65,6 +65,19 @@ bool IsEdge(const HitImage& hits, int x, int y) {
   return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1);
 }
 
+/// Factors over the image: 1 in its middle, 1 + `in_corners` in its corners.
+Image<float> MakeSwelling(const CameraModel& camera, double in_corners) {
+  Image<float> factors(camera.width, camera.height);
+  const double middle_x = 0.5 * (camera.width - 1), middle_y = 0.5 * (camera.height - 1);
+  const double corner_px = std::max(1.0, std::hypot(middle_x, middle_y));
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const double radius = std::hypot(x - middle_x, y - middle_y) / corner_px;
+      factors.At(x, y) = static_cast<float>(1.0 + in_corners * radius * radius);
+    }
+  return factors;
+}
+
 }  // namespace
 
 DepthSensor::DepthSensor(const CameraModel& camera, const SimulatedDepthOptions& options)
@@ -81,7 +94,8 @@ DepthSensor::DepthSensor(const CameraModel& camera, const SimulatedDepthOptions&
       edge_dropout_(static_cast<float>(options.expert().edge_dropout())),
       depth_scale_(static_cast<float>(options.expert().depth_scale())),
       flying_fraction_(options.expert().flying_fraction()),
-      readout_s_(options.expert().readout_s()) {}
+      readout_s_(options.expert().readout_s()),
+      swelling_(MakeSwelling(camera, options.expert().corner_swelling())) {}
 
 Image<std::uint16_t> DepthSensor::Render(const Scene& scene, const RigidTransform& T_world_depth,
                                          std::uint64_t noise_stream, Scratch& scratch) const {
@@ -112,7 +126,7 @@ Image<std::uint16_t> DepthSensor::RenderMoving(const Scene& scene, const PoseAft
     const CameraView view(scene, pose_of_strip(first));
     for (int y = first; y < std::min(first + strip, height); ++y) {
       CorrelateColumns(scratch.rows, y, scratch.noise);
-      MeasureRow(scratch.hits.z_m.Row(y), static_cast<float>(stretch), scratch);
+      MeasureRow(y, static_cast<float>(stretch), scratch);
       for (int x = 0; x < grid_.width(); ++x) {
         if (scratch.lit.At(x, y) == 0) continue;
         if (IsDropped(scratch.hits, view, x, y, drop_stream)) continue;
@@ -159,7 +173,7 @@ bool DepthSensor::IsDropped(const HitImage& hits, const CameraView& view, int x,
   return dropped_fraction > 0.0F && UniformNoise(drop_stream, counter) < dropped_fraction;
 }
 
-void DepthSensor::MeasureRow(std::span<const float> z_m, float stretch, Scratch& scratch) const {
+void DepthSensor::MeasureRow(int y, float stretch, Scratch& scratch) const {
   // Without branches and member accesses inside, so that the divisions become SIMD code.
   constexpr float kMaxRaw = static_cast<float>(kNoDepthSaturated - 1);
   constexpr float kUnquantised = 1e-4F;  // A step far below any noise.
@@ -169,15 +183,18 @@ void DepthSensor::MeasureRow(std::span<const float> z_m, float stretch, Scratch&
   const float known_metres_px = stretch * disparity_metres_px;
   const float step_px = step_px_ > 0.0F ? step_px_ : kUnquantised;
   const float min_m = min_depth_m_, max_m = max_depth_m_, scale = depth_scale_;
+  const std::span<const float> z_m = scratch.hits.z_m.Row(y);
   scratch.raw.resize(z_m.size());
   const float* const z = z_m.data();
+  const float* const swelling = swelling_.Row(y).data();
   const float* const noise = scratch.noise.data();
   std::int32_t* const out = scratch.raw.data();
   const int width = static_cast<int>(z_m.size());
   for (int x = 0; x < width; ++x) {
     const float true_px = disparity_metres_px / z[x];
     const float noisy_px = std::min(true_px, kMax_px) + sigma_px * noise[x];
-    const float measured_m = known_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
+    const float measured_m =
+        swelling[x] * known_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
     const float raw = measured_m * scale;
     const bool good = (measured_m >= min_m) & (measured_m <= max_m) & (raw <= kMaxRaw);
     out[x] = static_cast<std::int32_t>(RoundPositive(good ? raw : 0.0F));

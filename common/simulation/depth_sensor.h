@@ -49,8 +49,8 @@ class DepthSensor {
   void FindShadow(const HitImage& hits, Image<std::uint8_t>& lit) const;
   bool IsDropped(const HitImage& hits, const CameraView& view, int x, int y,
                  std::uint64_t drop_stream) const;
-  /// Raw values of one row of true depths with scratch.noise, 0 = out of range, into scratch.raw.
-  void MeasureRow(std::span<const float> z_m, float stretch, Scratch& scratch) const;
+  /// Raw values of row `y` of true depths with scratch.noise, 0 = out of range, into scratch.raw.
+  void MeasureRow(int y, float stretch, Scratch& scratch) const;
 
   const RayGrid grid_;
   const float disparity_metres_px_;  ///< Focal length x baseline: disparity = this / depth.
@@ -64,6 +64,7 @@ class DepthSensor {
   const float depth_scale_;
   const double flying_fraction_;
   const double readout_s_;
+  Image<float> swelling_;  ///< Distances are too long by these factors.
 };
 
 }  // namespace isotherm

@@ -273,6 +273,19 @@ TEST_F(DepthSensorTest, AWarmCameraShowsDistancesThatAreTooLong) {
   EXPECT_NEAR(sum / static_cast<double>(depth.size()), 1.01 * 8000.0, 2.0);
 }
 
+TEST_F(DepthSensorTest, DistancesSwellTowardsTheCorners) {
+  options_.mutable_expert()->set_disparity_noise_px(0.0);
+  options_.mutable_expert()->set_disparity_step_px(0.0);
+  options_.mutable_expert()->set_corner_swelling(0.02);
+  AddWall(0.8);
+  const Image<std::uint16_t> depth = Render();
+  EXPECT_NEAR(depth.At(320, 240), 8000, 1);
+  EXPECT_NEAR(depth.At(639, 479), 8160, 1);
+  EXPECT_NEAR(depth.At(0, 0), 8160, 1);
+  // 319.5 of 399.4 pixels from the middle: 0.64 of the swelling.
+  EXPECT_NEAR(depth.At(0, 240), 8102, 1);
+}
+
 TEST(DepthSensorOptionsTest, AreCheckedAndSayWhatIsWrong) {
   using Set = void (*)(SimulatedDepthExpertOptions&, double);
   struct Case {
@@ -284,6 +297,7 @@ TEST(DepthSensorOptionsTest, AreCheckedAndSayWhatIsWrong) {
        {Case{"flying_fraction", [](auto&o, double v) { o.set_flying_fraction(v); }, {-0.1, 1.1}},
         Case{"depth.expert.readout_s", [](auto&o, double v) { o.set_readout_s(v); }, {-0.01, 2.0}},
         Case{"warm_up_stretch", [](auto&o, double v) { o.set_warm_up_stretch(v); }, {-0.2, 0.2}},
+        Case{"corner_swelling", [](auto&o, double v) { o.set_corner_swelling(v); }, {-0.2, 0.2}},
         Case{"warm_up_time_constant_s",
              [](auto&o, double v) { o.set_warm_up_time_constant_s(v); },
              {0.0, -1.0}}}) {

@@ -47,6 +47,7 @@ void CheckDepth(const SimulatedDepthOptions& depth, RangeCheck& check) {
   check("depth.expert.flying_fraction", depth.expert().flying_fraction(), 0.0, 1.0);
   check("depth.expert.readout_s", depth.expert().readout_s(), 0.0, 1.0);
   check("depth.expert.warm_up_stretch", depth.expert().warm_up_stretch(), -0.1, 0.1);
+  check("depth.expert.corner_swelling", depth.expert().corner_swelling(), -0.1, 0.1);
   check("depth.expert.warm_up_time_constant_s", depth.expert().warm_up_time_constant_s(), 0.01,
         360'000.0);
 }
@@ -295,6 +296,8 @@ std::string SceneName(const SimulationOptions& options) {
       return "plane";
     case CORNER_SPHERE:
       return "corner-sphere";
+    case FLAT_WALL:
+      return "flat-wall";
     case FURNACE_DOOR:
       break;
   }

@@ -63,7 +63,7 @@ TEST_P(ScanPathTest, KeepsMostOfTheImageInWorkingRange) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ScannedScenes, ScanPathTest,
-                         ::testing::Values(FURNACE_DOOR, CALIBRATOR, CORNER_SPHERE));
+                         ::testing::Values(FURNACE_DOOR, CALIBRATOR, CORNER_SPHERE, FLAT_WALL));
 
 }  // namespace
 }  // namespace isotherm

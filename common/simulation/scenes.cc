@@ -13,6 +13,8 @@ StagedScene MakeScene(const SceneOptions& options) {
       return MakeCalibratorScene(options);
     case PLANE:
       return MakePlaneScene(options);
+    case FLAT_WALL:
+      return MakeFlatWallScene(options);
     case CORNER_SPHERE:
       return MakeCornerSphereScene(options);
     case FURNACE_DOOR:
@@ -43,6 +45,23 @@ StagedScene MakePlaneScene(const SceneOptions& options) {
   path.target_z_m = {0.6};
   path.distance_m = {0.6};
   return {scene.Build("plane"), path, {}};
+}
+
+StagedScene MakeFlatWallScene(const SceneOptions& options) {
+  constexpr double kDefault_celsius = 30.0, kSide_m = 4.0, kMiddle_m = kSceneCube_m / 2.0;
+  SceneBuilder scene(options.surround_celsius());
+  scene.UseMaterial({});
+  scene.RotatedBox("wall", {kMiddle_m, kMiddle_m, 0.9}, {kSide_m, kSide_m, 0.1}, {0.0, 0.0, 0.0})
+      .temperature = Uniform(options.has_hot_celsius() ? options.hot_celsius() : kDefault_celsius);
+  ScanPath path;
+  path.target_x_m = {kMiddle_m, 0.05, 7.0};
+  path.target_y_m = {kMiddle_m, 0.05, 9.0};
+  path.target_z_m = {0.85};
+  path.azimuth_rad = {0.0, 0.3, 14.0, 0.5};
+  path.elevation_rad = {0.0, 0.25, 11.0, 0.2};
+  path.distance_m = {0.8, 0.35, 20.0, -1.2};
+  path.roll_rad = {0.0, 0.2, 13.0};
+  return {scene.Build("flat-wall"), path, {}};
 }
 
 StagedScene MakeCornerSphereScene(const SceneOptions& options) {

@@ -33,6 +33,7 @@ StagedScene MakeScene(const SceneOptions& options);
 StagedScene MakeFurnaceDoorScene(const SceneOptions& options);
 StagedScene MakeCalibratorScene(const SceneOptions& options);
 StagedScene MakePlaneScene(const SceneOptions& options);
+StagedScene MakeFlatWallScene(const SceneOptions& options);
 StagedScene MakeCornerSphereScene(const SceneOptions& options);
 
 }  // namespace isotherm

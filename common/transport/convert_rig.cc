@@ -1,6 +1,7 @@
 #include <isotherm_frames.h>
 
 #include <cmath>
+#include <vector>
 
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
@@ -87,6 +88,34 @@ void ToWireSensors(const Rig& rig, isotherm_wire_Rig* to) {
   to->has_sensors = true;
 }
 
+/// Points to what `bias` holds.
+void ToWireDepthBias(const DepthBias& bias, isotherm_wire_Rig* to) {
+  const auto sequence = [](const std::vector<float>& values, auto& out) {
+    const auto length = static_cast<std::uint32_t>(values.size());
+    out = {._maximum = length,
+           ._length = length,
+           // DDS reads only.
+           ._buffer = const_cast<float*>(values.data()),
+           ._release = false};
+  };
+  to->depth_bias_columns = static_cast<std::uint8_t>(bias.columns);
+  to->depth_bias_rows = static_cast<std::uint8_t>(bias.rows);
+  sequence(bias.distances_m, to->depth_bias_distances_m);
+  sequence(bias.multipliers, to->depth_bias_multipliers);
+}
+
+void FromWireDepthBias(const isotherm_wire_Rig& from, Rig* rig) {
+  // An earlier edge does not send it.
+  if (from.depth_bias_columns == 0) return;
+  const auto values = [](const auto& sequence) {
+    return std::vector<float>(sequence._buffer, sequence._buffer + sequence._length);
+  };
+  rig->depth_sensor.bias = {.columns = from.depth_bias_columns,
+                            .rows = from.depth_bias_rows,
+                            .distances_m = values(from.depth_bias_distances_m),
+                            .multipliers = values(from.depth_bias_multipliers)};
+}
+
 void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
   // In a sample that ends before them these members read as zeros, which would be wrong values
   // rather than the rig's defaults.
@@ -94,7 +123,8 @@ void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
   rig->depth_sensor = {.near_range_m = from.depth_sensor.near_range_m,
                        .min_depth_m = from.depth_sensor.min_depth_m,
                        .max_depth_m = from.depth_sensor.max_depth_m,
-                       .noise_at_1m_m = from.depth_sensor.noise_at_1m_m};
+                       .noise_at_1m_m = from.depth_sensor.noise_at_1m_m,
+                       .bias = {}};
   const isotherm_wire_ThermalSensor& thermal = from.thermal_sensor;
   rig->thermal_sensor.time_constant_s = thermal.time_constant_s;
   rig->thermal_sensor.row_readout_s = thermal.row_readout_s;
@@ -131,6 +161,7 @@ std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, R
   FromWireSensors(from, rig);
   FromWireScale(from, rig);
   FromWireSceneInfluence(from, rig);
+  FromWireDepthBias(from, rig);
   return CheckRig(*rig);
 }
 
@@ -178,6 +209,7 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   to->scene_near_sigma_px = rig.thermal_sensor.scene_influence.near_sigma_px;
   to->scene_total_fraction = rig.thermal_sensor.scene_influence.total_fraction;
   to->has_scene_influence = true;
+  ToWireDepthBias(rig.depth_sensor.bias, to);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {

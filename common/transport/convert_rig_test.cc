@@ -77,6 +77,45 @@ TEST(ConvertRigTest, AnEdgeBefore24KnowsOfNoSceneInfluence) {
   EXPECT_EQ(received.rig.thermal_sensor.scene_influence.Total(), 0.0);
 }
 
+TEST(ConvertRigTest, AnEdgeThatSendsNoneKnowsOfNoDepthBias) {
+  isotherm_wire_Rig wire{};
+  RigDescription sent = SomeRig();
+  sent.rig.depth_sensor.bias = {
+      2, 2, {0.5F, 1.0F}, {1.0F, 1.1F, 1.2F, 1.0F, 1.0F, 1.0F, 0.9F, 1.0F}};
+  ToWire(sent, &wire);
+  RigDescription received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.rig.depth_sensor.bias.columns, 2);
+  EXPECT_EQ(received.rig.depth_sensor.bias.distances_m, sent.rig.depth_sensor.bias.distances_m);
+  EXPECT_EQ(received.rig.depth_sensor.bias.multipliers, sent.rig.depth_sensor.bias.multipliers);
+  wire.depth_bias_columns = wire.depth_bias_rows = 0;
+  wire.depth_bias_distances_m = {};
+  wire.depth_bias_multipliers = {};
+  received = RigDescription();
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_TRUE(received.rig.depth_sensor.bias.empty());
+}
+
+/// Of a sample that ends within it, or of a hostile peer.
+TEST(ConvertRigTest, ADepthBiasThatCannotBeIsRefused) {
+  RigDescription sent = SomeRig();
+  sent.rig.depth_sensor.bias = {2, 2, {0.5F}, {1.0F, 1.1F, 1.2F, 1.0F}};
+  const auto refuses = [&](const auto& change) {
+    isotherm_wire_Rig wire{};
+    ToWire(sent, &wire);
+    change(wire);
+    RigDescription received;
+    return FromWire(wire, &received).has_value();
+  };
+  EXPECT_FALSE(refuses([](isotherm_wire_Rig&) {}));
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_multipliers = {}; }));
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_multipliers._length = 3; }));
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_columns = 255; }));
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_distances_m = {}; }));
+  sent.rig.depth_sensor.bias.multipliers[1] = 7.0F;
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig&) {}));
+}
+
 TEST(ConvertRigTest, ASceneInfluenceThatCannotBeIsRefused) {
   for (const double fraction : {-0.1, 0.9, std::numeric_limits<double>::quiet_NaN()}) {
     isotherm_wire_Rig wire{};

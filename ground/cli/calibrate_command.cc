@@ -12,6 +12,7 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
   AddCalibrateRigCommand(*calibrate, body);
   AddCalibrateTimeCommand(*calibrate, body);
   AddCalibrateRefineCommand(*calibrate, body);
+  AddCalibrateDepthBiasCommand(*calibrate, body);
   AddCalibrateCheckCommand(*calibrate, body);
 }
 

@@ -59,6 +59,7 @@ void AddCalibrateTimeCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateCheckCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateCameraCommands(CLI::App& calibrate, CommandBody& body);
+void AddCalibrateDepthBiasCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateRigCommand(CLI::App& calibrate, CommandBody& body);
 
 }  // namespace isotherm

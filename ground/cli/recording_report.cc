@@ -139,8 +139,15 @@ void AppendCamera(std::string_view name, const std::optional<CameraModel>& camer
 void AppendSensors(const Rig& rig, std::string& text) {
   const DepthSensorModel& depth = rig.depth_sensor;
   text += fmt::format(
-      "{:<14}depth: {:g} to {:g} m, nothing seen nearer than {:g} m, noise {:g} mm at 1 m\n", "",
+      "{:<14}depth: {:g} to {:g} m, nothing seen nearer than {:g} m, noise {:g} mm at 1 m", "",
       depth.min_depth_m, depth.max_depth_m, depth.near_range_m, 1e3 * depth.noise_at_1m_m);
+  if (const DepthBias& bias = depth.bias; !bias.empty()) {
+    const auto [least, most] =
+        std::minmax_element(bias.multipliers.begin(), bias.multipliers.end());
+    text += fmt::format(", bias corrected by {:+.2f} to {:+.2f} %", 100.0 * (*least - 1.0),
+                        100.0 * (*most - 1.0));
+  }
+  text += "\n";
   const ThermalSensorModel& thermal = rig.thermal_sensor;
   text += fmt::format("{:<14}thermal: time constant {:g} ms, {:g} us from row to row", "",
                       1e3 * thermal.time_constant_s, 1e6 * thermal.row_readout_s);

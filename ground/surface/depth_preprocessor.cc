@@ -40,6 +40,27 @@ Image<std::int32_t> MakeRectification(const CameraModel& camera) {
   return source;
 }
 
+/// Layers as DepthPreprocessor keeps them.
+std::vector<Image<float>> MakeBiasSteps(const CameraModel& camera, const DepthBias& bias) {
+  if (bias.empty()) return {};
+  std::vector<Image<float>> steps(bias.distances_m.size(),
+                                  Image<float>(camera.width, camera.height));
+  const CameraModel ideal = camera.WithoutDistortion();
+  const auto fraction = [](double pixel, int size) { return pixel / std::max(1, size - 1); };
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u) {
+      const Eigen::Vector2d raw = ProjectNormalized(camera, Unproject(ideal, {u, v}));
+      const double x = fraction(raw.x(), camera.width), y = fraction(raw.y(), camera.height);
+      double before = 0.0;
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        const double multiplier = bias.InLayer(static_cast<int>(k), x, y);
+        steps[k].At(u, v) = static_cast<float>(multiplier - before);
+        before = multiplier;
+      }
+    }
+  return steps;
+}
+
 }  // namespace
 
 Status Validate(const PreprocessorOptions& o) {
@@ -185,7 +206,9 @@ DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
     : options_(options),
       range_(RangeOf(options, sensor)),
       noise_at_1m_m_(sensor.noise_at_1m_m),
-      camera_(depth_camera.WithoutDistortion()) {
+      camera_(depth_camera.WithoutDistortion()),
+      bias_distances_m_(sensor.bias.distances_m),
+      bias_steps_(MakeBiasSteps(depth_camera, sensor.bias)) {
   if (depth_camera.HasDistortion()) rectification_ = MakeRectification(depth_camera);
   prepared_.camera = camera_;
   prepared_.noise_at_1m = static_cast<float>(sensor.noise_at_1m_m);
@@ -210,8 +233,32 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
   pool.ParallelForRows(camera_.height, kRowsPerTask, [&](int y) {
     valid += MetresRow({raw->Row(y).data(), metres_per_unit, min_depth, max_depth},
                        prepared_.depth_m.Row(y));
+    if (!bias_steps_.empty()) CorrectBias(y);
   });
   prepared_.valid_pixels = valid;
+}
+
+void DepthPreprocessor::CorrectBias(int y) {
+  constexpr int kMaxLayers = DepthBias::kMaxDistances;
+  const std::size_t layers = bias_steps_.size();
+  std::array<const float*, kMaxLayers> steps{};
+  std::array<float, kMaxLayers> from_m{}, per_m{};
+  for (std::size_t k = 0; k < layers; ++k) {
+    steps[k] = bias_steps_[k].Row(y).data();
+    if (k == 0) continue;
+    from_m[k] = bias_distances_m_[k - 1];
+    per_m[k] = 1.0F / (bias_distances_m_[k] - bias_distances_m_[k - 1]);
+  }
+  const std::span<float> depth_m = prepared_.depth_m.Row(y);
+  for (std::size_t x = 0; x < depth_m.size(); ++x) {
+    const float measured_m = depth_m[x];
+    float multiplier = steps[0][x];
+    for (std::size_t k = 1; k < layers; ++k) {
+      const float share = std::clamp((measured_m - from_m[k]) * per_m[k], 0.0F, 1.0F);
+      multiplier += share * steps[k][x];
+    }
+    depth_m[x] = measured_m * multiplier;
+  }
 }
 
 const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadPool& pool) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
@@ -16,7 +17,8 @@ inline constexpr int kPyramidLevels = 3;
 /// A depth image made ready for tracking and integration. Depth camera coordinates, metres.
 struct PreparedDepth {
   CameraModel camera;  ///< Full resolution, without distortion.
-  /// Depth along z as it was measured, 0 = no return; in an image full of holes, those are filled.
+  /// Depth along z as it was measured, its bias corrected, 0 = no return; in an image full of
+  /// holes, those are filled.
   Image<float> depth_m;
   std::array<SurfaceMaps, kPyramidLevels> maps;  ///< Level 0 is full resolution, each next is half.
   /// Standard deviation of depth at 1 m, metres; it grows with the square of the depth.
@@ -37,9 +39,10 @@ DepthRange RangeOf(const PreprocessorOptions& options, const DepthSensorModel& s
 /// Fails if the options and the depth camera together leave no depth.
 Status CheckRange(const PreprocessorOptions& options, const DepthSensorModel& sensor);
 
-/// Algorithm 1, lines 2-3: range check, rectification, bilateral filter, depth pyramid, vertex and
-/// normal maps. Before the filter, holes of an image that is full of them are filled. Keeps its
-/// images, so a stream of equal frames allocates nothing. Thread-compatible.
+/// Algorithm 1, lines 2-3: range check, rectification, correction of the depth camera's bias,
+/// bilateral filter, depth pyramid, vertex and normal maps. Before the filter, holes of an image
+/// that is full of them are filled. Keeps its images, so a stream of equal frames allocates
+/// nothing. Thread-compatible.
 class DepthPreprocessor {
  public:
   DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera,
@@ -50,6 +53,8 @@ class DepthPreprocessor {
 
  private:
   void ToMetres(const DepthFrame& frame, ThreadPool& pool);
+  /// Multiplies row `y` of prepared_.depth_m by what its pixels' distances are wrong by.
+  void CorrectBias(int y);
 
   const PreprocessorOptions options_;
   const DepthRange range_;
@@ -57,6 +62,10 @@ class DepthPreprocessor {
   const CameraModel camera_;
   Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
                                        ///< empty: no distortion.
+  const std::vector<float> bias_distances_m_;
+  /// Of each distance the multipliers of rectified pixels, but for the first less those of the
+  /// distance before; empty: no bias is known.
+  std::vector<Image<float>> bias_steps_;
   Image<std::uint16_t> rectified_raw_;
   Image<float> filled_m_;
   std::array<Image<float>, kPyramidLevels> filtered_m_;

@@ -64,5 +64,40 @@ TEST(DepthRectificationTest, EachPixelShowsTheDepthThatOpencvFindsThere) {
   EXPECT_LT(outside, 100) << "a barrel lens sees more than the ideal camera";
 }
 
+/// The bias belongs to the raw pixel, whichever pixel of the rectified image shows it.
+TEST(DepthRectificationTest, ABiasIsCorrectedWhereTheRawImageShowsIt) {
+  const CameraModel camera = DistortedCamera();
+  DepthSensorModel sensor;
+  sensor.bias = {.columns = 3, .rows = 2, .distances_m = {0.6F, 1.2F}, .multipliers = {}};
+  for (int node = 0; node < 12; ++node)
+    sensor.bias.multipliers.push_back(0.95F + 0.01F * static_cast<float>(node));
+  DepthFrame frame;
+  frame.depth_scale = 1000.0;
+  frame.depth_raw = Image<std::uint16_t>(camera.width, camera.height);
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x)
+      frame.depth_raw.At(x, y) = static_cast<std::uint16_t>(400 + 3 * x);
+  ThreadPool pool(2);
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera, sensor);
+  DepthPreprocessor uncorrected(PreprocessorOptions(), camera, DepthSensorModel());
+  const Image<float>& corrected_m = preprocessor.Process(frame, pool).depth_m;
+  const Image<float>& measured_m = uncorrected.Process(frame, pool).depth_m;
+  const testing::OpencvRectification truth(camera, camera.WithoutDistortion());
+  int compared = 0;
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u) {
+      const double measured = measured_m.At(u, v);
+      if (measured == 0.0) {
+        ASSERT_EQ(corrected_m.At(u, v), 0.0F);
+        continue;
+      }
+      const double expected =
+          measured * sensor.bias.At(truth.x(v, u) / 319.0, truth.y(v, u) / 239.0, measured);
+      ASSERT_NEAR(corrected_m.At(u, v), expected, 2e-5) << "pixel " << u << ", " << v;
+      ++compared;
+    }
+  EXPECT_GT(compared, 60'000);
+}
+
 }  // namespace
 }  // namespace isotherm

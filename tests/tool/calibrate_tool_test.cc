@@ -210,5 +210,50 @@ TEST_F(CalibrateToolTest, TheDelayOfRecordedDataIsFoundAndThenAgrees) {
   EXPECT_EQ(json["calibration_check"]["verdict"], "agrees") << json["calibration_check"].dump();
 }
 
+TEST_F(CalibrateToolTest, WhatSwellsInTheDepthImageIsFoundFromAWallAndCorrected) {
+  const std::string wall = "--duration 8 --scene flat-wall --set depth.expert.corner_swelling=0.02";
+  Simulate(wall);
+  const Outcome told = Run("calibrate depth-bias scan.mcap --rig rig.textproto");
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out, AllOf(HasSubstr("nothing is written"), HasSubstr("unevenness")));
+  EXPECT_TRUE(Load("rig.textproto").depth_sensor.bias.empty());
+
+  RunWell("calibrate depth-bias scan.mcap --rig rig.textproto --apply --json bias.json");
+  const Rig rig = Load("rig.textproto");
+  ASSERT_FALSE(rig.depth_sensor.bias.empty());
+  EXPECT_EQ(rig.serial, "A 17") << "what else the file says stays";
+  EXPECT_TRUE(fs::exists(folder_ / "rig.textproto.bak"));
+  // The simulated camera's swelling, closed form.
+  double before = 0.0, after = 0.0;
+  for (double x = 0.0; x < 1.05; x += 0.1)
+    for (double y = 0.0; y < 1.05; y += 0.1)
+      for (const double distance_m : {0.5, 0.7, 0.9}) {
+        // Of the corner's distance from the middle, squared; the image is 255 by 191 pixels.
+        const double radius2 = (std::pow(255.0 * (x - 0.5), 2) + std::pow(191.0 * (y - 0.5), 2)) /
+                               (0.25 * (255.0 * 255.0 + 191.0 * 191.0));
+        const double swelling = 1.0 + 0.02 * radius2;
+        before += std::pow(swelling - 1.0, 2);
+        after += std::pow(swelling * rig.depth_sensor.bias.At(x, y, distance_m) - 1.0, 2);
+      }
+  EXPECT_LT(std::sqrt(after / before), 0.1);
+
+  // Another scan of the wall, with the new calibration: there is nothing left.
+  RunWell("simulate -o again.mcap --seed 5 --set rig_file=rig.textproto --set thermal.rate_hz=10 " +
+          wall);
+  EXPECT_THAT(Run("calibrate depth-bias again.mcap -o never.textproto").out,
+              HasSubstr("nothing to write, never.textproto is not made"));
+  EXPECT_THAT(Run("inspect again.mcap").out, HasSubstr("bias corrected by -1.9"));
+  EXPECT_FALSE(fs::exists(folder_ / "never.textproto"));
+}
+
+TEST_F(CalibrateToolTest, WhatIsNoWallTellsNothingOfTheDepthCamera) {
+  Simulate("--scene corner-sphere --duration 3");
+  const Outcome outcome = Run("calibrate depth-bias scan.mcap --rig rig.textproto --apply");
+  EXPECT_EQ(outcome.status, kData);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("scan.mcap"), HasSubstr("a flat wall fills the image"),
+                                 HasSubstr("move slowly before a bare wall")));
+  EXPECT_EQ(Run("calibrate depth-bias nothing.mcap").status, kNoInput);
+}
+
 }  // namespace
 }  // namespace isotherm::testing

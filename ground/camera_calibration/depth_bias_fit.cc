@@ -1,0 +1,205 @@
+#include "ground/camera_calibration/depth_bias_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "ground/camera_calibration/depth_bias_equations.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::size_t kMaxViews = 800;
+constexpr std::size_t kMinViews = 40;
+// Swellings are smooth: the lenses of camera and projector bend the image slowly.
+constexpr int kColumns = 9, kRows = 7, kMaxDistances = 6;
+constexpr double kDistanceRatio = 1.4;  // From one distance of the table to the next.
+constexpr int kRounds = 6;
+// Patches whose inverse depth is off by more than this many standard deviations do not count.
+constexpr double kCutSigmas = 4.7;
+// Systematic errors are means of at least this many views.
+constexpr int kMinMean = 5;
+// Parts of a scan that are held out or taken together.
+constexpr double kPart_s = 1.0;
+
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The patches' inverse depths as a table corrects them.
+std::vector<double> Corrected(const WallView& view, const DepthBias& bias) {
+  std::vector<double> corrected;
+  corrected.reserve(view.patches.size());
+  for (const WallPatch& patch : view.patches) {
+    const double inverse = patch.inverse_depth;
+    corrected.push_back(inverse / bias.At(patch.across, patch.down, 1.0 / inverse));
+  }
+  return corrected;
+}
+
+/// A table without values whose distances cover those of the wall.
+DepthBias EmptyTable(const std::vector<const WallView*>& views) {
+  std::vector<double> distances;
+  for (const WallView* view : views)
+    for (const WallPatch& patch : view->patches) distances.push_back(1.0 / patch.inverse_depth);
+  std::sort(distances.begin(), distances.end());
+  const double near = distances[distances.size() / 50];
+  const double far = distances[distances.size() - 1 - distances.size() / 50];
+  const int layers =
+      std::clamp(static_cast<int>(std::lround(std::log(far / near) / std::log(kDistanceRatio))) + 1,
+                 1, kMaxDistances);
+  DepthBias table{.columns = kColumns, .rows = kRows, .distances_m = {}, .multipliers = {}};
+  for (int k = 0; k < layers; ++k) {
+    const double share = layers > 1 ? static_cast<double>(k) / (layers - 1) : 0.5;
+    table.distances_m.push_back(static_cast<float>(near * std::pow(far / near, share)));
+  }
+  table.multipliers.assign(static_cast<std::size_t>(layers * kColumns * kRows), 1.0F);
+  return table;
+}
+
+DepthBias FitTable(const std::vector<const WallView*>& views) {
+  DepthBias table = EmptyTable(views);
+  double cut = kMaxOffWall;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::vector<double>> weights;
+    std::vector<double> distances;
+    for (const WallView* view : views) {
+      const WallFit fit = FitWall(*view, Corrected(*view, table), cut);
+      std::vector<double>& of_view = weights.emplace_back();
+      for (std::size_t i = 0; i < view->patches.size(); ++i) {
+        of_view.push_back(view->patches[i].weight * Biweight(fit.off[i], cut));
+        distances.push_back(std::abs(fit.off[i]));
+      }
+    }
+    // Of a normal distribution the median is 0.67 standard deviations.
+    const double sigma = std::max(1e-5, MedianOf(distances) / 0.6745);
+    DepthBiasEquations equations(table);
+    equations.AddPrior();
+    for (std::size_t i = 0; i < views.size(); ++i) equations.AddView(*views[i], weights[i], sigma);
+    table.multipliers = equations.Solve();
+    cut = std::clamp(kCutSigmas * sigma, 1e-4, kMaxOffWall);
+  }
+  return table;
+}
+
+/// How far walls are from planes, root mean square over places in the image and distances, of means
+/// over the views.
+double SystematicError(const std::vector<const WallView*>& views, const DepthBias& bias) {
+  struct Mean {
+    double sum = 0.0;
+    int count = 0;
+  };
+  std::map<std::tuple<int, int, int>, Mean> places;
+  for (const WallView* view : views) {
+    const WallFit fit = FitWall(*view, Corrected(*view, bias), kMaxOffWall);
+    for (std::size_t i = 0; i < view->patches.size(); ++i) {
+      if (std::abs(fit.off[i]) > kMaxOffWall) continue;
+      const WallPatch& patch = view->patches[i];
+      const double octave = std::log(1.0 / patch.inverse_depth) / std::log(kDistanceRatio);
+      Mean& place =
+          places[{static_cast<int>(std::floor(octave)), static_cast<int>(patch.across * 16.0F),
+                  static_cast<int>(patch.down * 12.0F)}];
+      place.sum += fit.off[i];
+      ++place.count;
+    }
+  }
+  double squares = 0.0, count = 0.0;
+  for (const auto& [where, place] : places) {
+    if (place.count < kMinMean) continue;
+    squares += std::pow(place.sum / place.count, 2);
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+int CountSeenNodes(const std::vector<const WallView*>& views, const DepthBias& table) {
+  std::vector<double> seen(table.multipliers.size(), 0.0);
+  for (const WallView* view : views)
+    for (const WallPatch& patch : view->patches) {
+      const NodeShares at = SharesAt(table, patch);
+      for (std::size_t i = 0; i < 8; ++i) seen[at.nodes[i]] += at.shares[i];
+    }
+  return static_cast<int>(
+      std::count_if(seen.begin(), seen.end(), [](double sum) { return sum >= kMinMean; }));
+}
+
+}  // namespace
+
+DepthBiasFit::DepthBiasFit(const CameraModel& depth_camera, DepthBias before)
+    : camera_(depth_camera), before_(std::move(before)) {}
+
+void DepthBiasFit::Add(double time_s, const Image<float>& depth_m) {
+  CHECK(depth_m.width() == camera_.width && depth_m.height() == camera_.height);
+  if (frames_++ % stride_ != 0) return;
+  std::optional<WallView> view = SeeWall(camera_, time_s, depth_m);
+  if (!view) return;
+  views_.push_back(std::move(*view));
+  if (views_.size() <= kMaxViews) return;
+  // Every second one is enough from now on.
+  for (std::size_t i = 1; 2 * i < views_.size(); ++i) views_[i] = std::move(views_[2 * i]);
+  views_.resize((views_.size() + 1) / 2);
+  stride_ *= 2;
+}
+
+Result<DepthBiasReport> DepthBiasFit::Solve(const std::function<void(double)>& progress) const {
+  if (views_.size() < kMinViews) {
+    return Err(FailedPrecondition(fmt::format(
+        "a flat wall fills the image in {} of {} depth frames, {} are needed: move slowly before a "
+        "bare wall, from near to far and back, and turn the camera to either side",
+        views_.size(), (frames_ + stride_ - 1) / stride_, kMinViews)));
+  }
+  // Of four parts one is held out; the others make two halves.
+  std::vector<const WallView*> held_out, all;
+  std::array<std::vector<const WallView*>, 2> halves;
+  for (const WallView& view : views_) {
+    const auto part = static_cast<long>((view.time_s - views_.front().time_s) / kPart_s) % 3;
+    if (part == 2) {
+      held_out.push_back(&view);
+      continue;
+    }
+    all.push_back(&view);
+    halves[static_cast<std::size_t>(part)].push_back(&view);
+  }
+  if (held_out.empty() || halves[1].empty()) {
+    return Err(FailedPrecondition(fmt::format("the wall was seen for {:.1f} s only, 10 are needed",
+                                              views_.back().time_s - views_.front().time_s)));
+  }
+  const auto tell = [&](double fraction) {
+    if (progress) progress(fraction);
+  };
+  DepthBiasReport report;
+  report.frames = (frames_ + stride_ - 1) / stride_;
+  report.walls = views_.size();
+  report.bias = FitTable(all);
+  tell(0.4);
+  const std::array<DepthBias, 2> of_halves = {FitTable(halves[0]), FitTable(halves[1])};
+  tell(0.8);
+  double squares = 0.0, count = 0.0;
+  for (const WallView* view : held_out)
+    for (const WallPatch& patch : view->patches) {
+      const double distance_m = 1.0 / patch.inverse_depth;
+      squares += std::pow(of_halves[0].At(patch.across, patch.down, distance_m) -
+                              of_halves[1].At(patch.across, patch.down, distance_m),
+                          2);
+      count += 1.0;
+    }
+  report.halves_rms = std::sqrt(squares / count);
+  report.before_rms = SystematicError(held_out, before_);
+  report.after_rms = SystematicError(held_out, report.bias);
+  report.near_m = report.bias.distances_m.front();
+  report.far_m = report.bias.distances_m.back();
+  report.nodes = static_cast<int>(report.bias.multipliers.size());
+  report.seen_nodes = CountSeenNodes(all, report.bias);
+  tell(1.0);
+  return report;
+}
+
+}  // namespace isotherm
