@@ -48,7 +48,7 @@ StagedScene MakePlaneScene(const SceneOptions& options) {
 }
 
 StagedScene MakeFlatWallScene(const SceneOptions& options) {
-  constexpr double kDefault_celsius = 30.0, kSide_m = 4.0, kMiddle_m = kSceneCube_m / 2.0;
+  constexpr double kDefault_celsius = 30.0, kSide_m = 3.0, kMiddle_m = kSceneCube_m / 2.0;
   SceneBuilder scene(options.surround_celsius());
   scene.UseMaterial({});
   scene.RotatedBox("wall", {kMiddle_m, kMiddle_m, 0.9}, {kSide_m, kSide_m, 0.1}, {0.0, 0.0, 0.0})

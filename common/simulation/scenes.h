@@ -10,8 +10,8 @@ namespace isotherm {
 
 class SceneOptions;
 
-/// Edge length of the cube that holds every scene; `world` has its origin in the cube's corner, x
-/// to the right, y down, z away from the operator.
+/// Edge length of the cube that holds every scene but the flat wall, which goes on beyond it;
+/// `world` has its origin in the cube's corner, x to the right, y down, z away from the operator.
 inline constexpr double kSceneCube_m = 0.96;
 
 /// A scene and how to scan it.

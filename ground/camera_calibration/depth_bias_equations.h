@@ -26,8 +26,8 @@ class DepthBiasEquations {
   /// Of `table` sides and distances count. It must outlive this.
   explicit DepthBiasEquations(const DepthBias& table);
 
-  /// What is known before: nodes are about 1, smooth, 1 in the middle of the image, and do not turn
-  /// walls.
+  /// Adds what is known before: nodes are about 1, smooth, 1 in the middle of the image, and do not
+  /// turn walls.
   void AddPrior();
 
   /// A view of the wall whose plane is not known. `weights` of its patches; `sigma`: of an inverse

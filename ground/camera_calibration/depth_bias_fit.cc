@@ -25,7 +25,7 @@ constexpr double kCutSigmas = 4.7;
 // Systematic errors are means of at least this many views.
 constexpr int kMinMean = 5;
 // Parts of a scan that are held out or taken together.
-constexpr double kPart_s = 1.0;
+constexpr double kPart_s = 1.0, kMinSeconds = 6.0;
 
 double MedianOf(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -156,22 +156,27 @@ Result<DepthBiasReport> DepthBiasFit::Solve(const std::function<void(double)>& p
         "bare wall, from near to far and back, and turn the camera to either side",
         views_.size(), (frames_ + stride_ - 1) / stride_, kMinViews)));
   }
-  // Of four parts one is held out; the others make two halves.
+  const auto [first, last] =
+      std::minmax_element(views_.begin(), views_.end(),
+                          [](const WallView& a, const WallView& b) { return a.time_s < b.time_s; });
+  if (const double seen_s = last->time_s - first->time_s; !(seen_s >= kMinSeconds)) {
+    return Err(FailedPrecondition(
+        fmt::format("the wall was seen for {:.1f} s only, {:g} are needed", seen_s, kMinSeconds)));
+  }
+  // Of three parts one is held out; the others make two halves.
   std::vector<const WallView*> held_out, all;
   std::array<std::vector<const WallView*>, 2> halves;
   for (const WallView& view : views_) {
-    const auto part = static_cast<long>((view.time_s - views_.front().time_s) / kPart_s) % 3;
+    const auto part = static_cast<std::size_t>((view.time_s - first->time_s) / kPart_s) % 3;
     if (part == 2) {
       held_out.push_back(&view);
-      continue;
+    } else {
+      all.push_back(&view);
+      halves[part].push_back(&view);
     }
-    all.push_back(&view);
-    halves[static_cast<std::size_t>(part)].push_back(&view);
   }
-  if (held_out.empty() || halves[1].empty()) {
-    return Err(FailedPrecondition(fmt::format("the wall was seen for {:.1f} s only, 10 are needed",
-                                              views_.back().time_s - views_.front().time_s)));
-  }
+  if (held_out.empty() || halves[0].empty() || halves[1].empty())
+    return Err(FailedPrecondition("the wall was seen now and then only: keep it in view"));
   const auto tell = [&](double fraction) {
     if (progress) progress(fraction);
   };

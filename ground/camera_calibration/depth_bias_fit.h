@@ -27,7 +27,7 @@ struct DepthBiasReport {
   /// Difference of the multipliers that two halves of the scan give, root mean square.
   double halves_rms = 0.0;
 
-  /// Whether it is worth to be written.
+  /// Says whether it is worth to be written.
   bool Improves() const { return after_rms < 0.9 * before_rms; }
 };
 

@@ -13,7 +13,8 @@
 namespace isotherm {
 namespace {
 
-constexpr int kPatch_px = 16;
+constexpr int kMinPatch_px = 16;
+constexpr int kMaxPatchesAcross = 48;   // Of large images patches are larger.
 constexpr double kMinPatchShare = 0.5;  // Of its pixels that have a depth.
 // A patch with a larger ratio of depths shows an edge.
 constexpr float kMaxPatchDepth = 1.12F;
@@ -23,11 +24,11 @@ constexpr double kMaxOutside = 0.25;
 constexpr int kFitRounds = 6;
 
 std::optional<WallPatch> PatchAt(const CameraModel& camera, const Image<float>& depth_m, int left,
-                                 int top) {
+                                 int top, int side) {
   double count = 0.0, inverse = 0.0, x_px = 0.0, y_px = 0.0;
   float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0F;
-  for (int y = top; y < top + kPatch_px; ++y)
-    for (int x = left; x < left + kPatch_px; ++x) {
+  for (int y = top; y < top + side; ++y)
+    for (int x = left; x < left + side; ++x) {
       const float depth = depth_m.At(x, y);
       if (!(depth > 0.0F)) continue;
       count += 1.0;
@@ -37,7 +38,7 @@ std::optional<WallPatch> PatchAt(const CameraModel& camera, const Image<float>& 
       nearest = std::min(nearest, depth);
       farthest = std::max(farthest, depth);
     }
-  const double share = count / (kPatch_px * kPatch_px);
+  const double share = count / (side * side);
   if (share < kMinPatchShare || farthest > kMaxPatchDepth * nearest) return std::nullopt;
   const Eigen::Vector2d pixel(x_px / count, y_px / count);
   const Eigen::Vector2d ray = Unproject(camera, pixel);
@@ -85,10 +86,12 @@ bool KeepWall(WallView& view) {
 std::optional<WallView> SeeWall(const CameraModel& depth_camera, double time_s,
                                 const Image<float>& depth_m) {
   WallView view{time_s, {}};
+  const int longer = std::max(depth_camera.width, depth_camera.height);
+  const int side = std::max(kMinPatch_px, longer / kMaxPatchesAcross);
   int places = 0;
-  for (int top = 0; top + kPatch_px <= depth_camera.height; top += kPatch_px)
-    for (int left = 0; left + kPatch_px <= depth_camera.width; left += kPatch_px, ++places)
-      if (const auto patch = PatchAt(depth_camera, depth_m, left, top))
+  for (int top = 0; top + side <= depth_camera.height; top += side)
+    for (int left = 0; left + side <= depth_camera.width; left += side, ++places)
+      if (const auto patch = PatchAt(depth_camera, depth_m, left, top, side))
         view.patches.push_back(*patch);
   const bool is_full = static_cast<double>(view.patches.size()) >= kMinImageShare * places;
   if (view.patches.empty() || !is_full || !KeepWall(view)) return std::nullopt;

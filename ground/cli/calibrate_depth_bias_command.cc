@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,11 +10,10 @@
 
 #include "common/base/output_file.h"
 #include "common/base/progress.h"
-#include "common/options/text_proto.h"
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
-#include "common/rig/rig_calibration_file.h"
 #include "ground/camera_calibration/depth_bias_scan.h"
+#include "ground/cli/calibrated_rig_file.h"
 #include "ground/cli/command.h"
 #include "ground/cli/today.h"
 #include "ground/json/json.h"
@@ -123,26 +122,6 @@ void SetBias(const Arguments& arguments, const DepthBiasReport& report, RigCalib
   record.set_refused(static_cast<int>(report.frames - report.walls));
 }
 
-Status WriteRig(const Arguments& arguments, const DepthBiasReport& report, const Rig& rig) {
-  const std::string& path = arguments.apply ? arguments.rig : arguments.output;
-  std::error_code error;
-  const bool was_there = std::filesystem::exists(path, error);
-  RigCalibration whole = ToProto(rig);
-  // With what a Rig does not hold: how its values were found.
-  if (!arguments.rig.empty()) {
-    whole.Clear();
-    ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.rig, whole));
-  }
-  SetBias(arguments, report, whole);
-  ISOTHERM_RETURN_IF_ERROR(EditRigFile(path, [&](RigCalibration& file) {
-    file = whole;
-    return OkStatus();
-  }));
-  fmt::print("{}: written{}\n", path,
-             was_there ? fmt::format("; as it was, with its comments: {}.bak", path) : "");
-  return OkStatus();
-}
-
 int Run(const Arguments& arguments) {
   std::optional<Rig> rig;
   if (!arguments.rig.empty()) {
@@ -173,7 +152,9 @@ int Run(const Arguments& arguments) {
     fmt::print("nothing is written: --apply changes the file of --rig, --output writes another\n");
     return 0;
   }
-  const Status written = WriteRig(arguments, *report, *rig);
+  const Status written =
+      WriteCalibratedRig({arguments.rig, arguments.apply ? arguments.rig : arguments.output}, *rig,
+                         [&](RigCalibration& file) { SetBias(arguments, *report, file); });
   return written.ok() ? 0 : Fail(written);
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,11 +10,11 @@
 
 #include "common/base/output_file.h"
 #include "common/base/progress.h"
-#include "common/options/text_proto.h"
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
 #include "common/rig/rig_calibration_file.h"
 #include "ground/calibration/calibration_check.h"
+#include "ground/cli/calibrated_rig_file.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/frame_rendering.h"
@@ -157,26 +156,6 @@ void SetRefined(const RefineArguments& arguments, const RecordingRefinement& ref
   *rig.mutable_pose_calibration() = record;
 }
 
-Status WriteRig(const RefineArguments& arguments, const RecordingRefinement& refined) {
-  const std::string& path = arguments.apply ? arguments.rig : arguments.output;
-  std::error_code error;
-  const bool was_there = std::filesystem::exists(path, error);
-  RigCalibration whole = ToProto(refined.rig);
-  // With what a Rig does not hold: how its values were found.
-  if (!arguments.rig.empty()) {
-    whole.Clear();
-    ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.rig, whole));
-  }
-  SetRefined(arguments, refined, whole);
-  ISOTHERM_RETURN_IF_ERROR(EditRigFile(path, [&](RigCalibration& rig) {
-    rig = whole;
-    return OkStatus();
-  }));
-  fmt::print("{}: written{}\n", path,
-             was_there ? fmt::format("; as it was, with its comments: {}.bak", path) : "");
-  return OkStatus();
-}
-
 Status WriteExtras(const RefineArguments& arguments, const RefineRun& run) {
   if (!arguments.json.empty()) {
     ISOTHERM_RETURN_IF_ERROR(
@@ -207,7 +186,9 @@ int RunRefine(const RefineArguments& arguments) {
     fmt::print("nothing is written: --apply changes the file of --rig, --output writes another\n");
     return 0;
   }
-  const Status written = WriteRig(arguments, run.refined());
+  const Status written = WriteCalibratedRig(
+      {arguments.rig, arguments.apply ? arguments.rig : arguments.output}, run.refined().rig,
+      [&](RigCalibration& rig) { SetRefined(arguments, run.refined(), rig); });
   return written.ok() ? 0 : Fail(written);
 }
 

@@ -63,8 +63,8 @@ class DepthPreprocessor {
   Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
                                        ///< empty: no distortion.
   const std::vector<float> bias_distances_m_;
-  /// Of each distance the multipliers of rectified pixels, but for the first less those of the
-  /// distance before; empty: no bias is known.
+  /// Multipliers of rectified pixels at each distance, but for the first less those at the distance
+  /// before; empty: no bias is known.
   std::vector<Image<float>> bias_steps_;
   Image<std::uint16_t> rectified_raw_;
   Image<float> filled_m_;

@@ -242,7 +242,7 @@ TEST_F(CalibrateToolTest, WhatSwellsInTheDepthImageIsFoundFromAWallAndCorrected)
           wall);
   EXPECT_THAT(Run("calibrate depth-bias again.mcap -o never.textproto").out,
               HasSubstr("nothing to write, never.textproto is not made"));
-  EXPECT_THAT(Run("inspect again.mcap").out, HasSubstr("bias corrected by -1.9"));
+  EXPECT_THAT(Run("inspect again.mcap").out, HasSubstr("bias corrected by -2.0"));
   EXPECT_FALSE(fs::exists(folder_ / "never.textproto"));
 }
 
