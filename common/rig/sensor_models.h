@@ -13,7 +13,7 @@ struct DepthSensorModel {
   double near_range_m = 0.35;
   double min_depth_m = 0.3, max_depth_m = 4.0;  ///< Depth outside is no return.
   double noise_at_1m_m = 0.006;  ///< Noise and unevenness; it grows with the square of the depth.
-  DepthBias bias{};              ///< What is wrong with its distances.
+  DepthBias bias{};              ///< Says what is wrong with its distances.
 };
 
 /// Describes a lens set to one distance.

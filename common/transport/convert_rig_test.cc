@@ -96,7 +96,7 @@ TEST(ConvertRigTest, AnEdgeThatSendsNoneKnowsOfNoDepthBias) {
   EXPECT_TRUE(received.rig.depth_sensor.bias.empty());
 }
 
-/// Of a sample that ends within it, or of a hostile peer.
+/// Such samples end within it, or come from a hostile peer.
 TEST(ConvertRigTest, ADepthBiasThatCannotBeIsRefused) {
   RigDescription sent = SomeRig();
   sent.rig.depth_sensor.bias = {2, 2, {0.5F}, {1.0F, 1.1F, 1.2F, 1.0F}};

@@ -23,7 +23,7 @@ NodeShares SharesAt(const DepthBias& table, const WallPatch& patch);
 /// they and the planes of the views solve linear equations together.
 class DepthBiasEquations {
  public:
-  /// Of `table` sides and distances count. It must outlive this.
+  /// The sides and distances of `table` count. It must outlive this.
   explicit DepthBiasEquations(const DepthBias& table);
 
   /// Adds what is known before: nodes are about 1, smooth, 1 in the middle of the image, and do not

@@ -15,7 +15,7 @@ struct WallPatch {
   float x, y;           ///< Direction, as depth camera coordinates at z = 1.
   float across, down;   ///< Where it lies, in fractions of the image.
   float inverse_depth;  ///< Mean, 1/m.
-  float weight;         ///< Share of its pixels that have a depth, 0..1.
+  float weight;         ///< Fraction of its pixels that have a depth.
 
   Eigen::Vector3d Ray() const { return {x, y, 1.0}; }
 };
