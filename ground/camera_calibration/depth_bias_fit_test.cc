@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 
@@ -83,9 +84,11 @@ Result<DepthBiasReport> Fit(const TrueMultiplier& truth, bool with_table = false
 /// Root mean square of what is left of the error over the image at a distance, as a fraction.
 double Left(const DepthBias& found, const TrueMultiplier& truth, double distance_m) {
   double squares = 0.0, count = 0.0;
-  for (double x = 0.05; x < 1.0; x += 0.1)
-    for (double y = 0.05; y < 1.0; y += 0.1, count += 1.0)
+  for (int column = 0; column < 10; ++column)
+    for (int row = 0; row < 10; ++row, count += 1.0) {
+      const double x = 0.05 + 0.1 * column, y = 0.05 + 0.1 * row;
       squares += std::pow(found.At(x, y, distance_m) / truth(x, y, distance_m) - 1.0, 2);
+    }
   return std::sqrt(squares / count);
 }
 

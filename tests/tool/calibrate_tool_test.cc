@@ -225,9 +225,10 @@ TEST_F(CalibrateToolTest, WhatSwellsInTheDepthImageIsFoundFromAWallAndCorrected)
   EXPECT_TRUE(fs::exists(folder_ / "rig.textproto.bak"));
   // The simulated camera's swelling, closed form.
   double before = 0.0, after = 0.0;
-  for (double x = 0.0; x < 1.05; x += 0.1)
-    for (double y = 0.0; y < 1.05; y += 0.1)
+  for (int column = 0; column <= 10; ++column)
+    for (int row = 0; row <= 10; ++row)
       for (const double distance_m : {0.5, 0.7, 0.9}) {
+        const double x = 0.1 * column, y = 0.1 * row;
         // Of the corner's distance from the middle, squared; the image is 255 by 191 pixels.
         const double radius2 = (std::pow(255.0 * (x - 0.5), 2) + std::pow(191.0 * (y - 0.5), 2)) /
                                (0.25 * (255.0 * 255.0 + 191.0 * 191.0));
