@@ -90,7 +90,6 @@ TEST(RigCalibrationTest, SensorsAreReadInMetresAndWrittenBack) {
   }
 }
 
-/// A file from before these fields existed means what the options' defaults were then.
 TEST(RigCalibrationTest, ADepthBiasIsReadAndWrittenBack) {
   const std::string text = std::string(kRigText) + R"(
 depth_sensor { bias { columns: 2 rows: 2 distance_m: 0.5 multiplier: [1.0, 1.01, 0.99, 1.02] } })";
@@ -105,6 +104,7 @@ depth_sensor { bias { columns: 2 rows: 2 distance_m: 0.5 multiplier: [1.0, 1.01,
               AllOf(HasSubstr("rig.textproto"), HasSubstr("depth_sensor.bias.multiplier")));
 }
 
+/// A file from before these fields existed means what the options' defaults were then.
 TEST(RigCalibrationTest, ARigFileWithoutSensorsHasThoseOfBefore) {
   const Rig rig = ParseRigCalibration(kRigText, "rig").value();
   EXPECT_EQ(rig.depth_sensor.near_range_m, 0.35);

@@ -112,7 +112,11 @@ TEST(ConvertRigTest, ADepthBiasThatCannotBeIsRefused) {
   EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_multipliers._length = 3; }));
   EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_columns = 255; }));
   EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_distances_m = {}; }));
-  sent.rig.depth_sensor.bias.multipliers[1] = 7.0F;
+  sent.rig.depth.reset();
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_columns = 255; }))
+      << "nor without cameras";
+  sent = SomeRig();
+  sent.rig.depth_sensor.bias = {2, 2, {0.5F}, {1.0F, 7.0F, 1.2F, 1.0F}};
   EXPECT_TRUE(refuses([](isotherm_wire_Rig&) {}));
 }
 

@@ -73,6 +73,10 @@ Rig MakeRig() {
   rig.reprojection_error_px = 0.31;
   rig.depth_sensor = {
       .near_range_m = 0.5, .min_depth_m = 0.4, .max_depth_m = 6.0, .noise_at_1m_m = 0.01};
+  rig.depth_sensor.bias = {.columns = 2,
+                           .rows = 2,
+                           .distances_m = {0.5F, 1.5F},
+                           .multipliers = {1.0F, 1.01F, 0.99F, 1.02F, 1.0F, 1.03F, 0.97F, 1.04F}};
   rig.thermal_sensor = {
       .time_constant_s = 0.012,
       .row_readout_s = 1e-4,

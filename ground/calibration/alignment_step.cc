@@ -114,7 +114,8 @@ AlignmentStep SolveAlignment(const AlignmentEquations& equations, const Alignmen
     step.in_sigmas = std::hypot(step.in_sigmas, by / sigma);
     step.observed_directions += observed ? 1 : 0;
   }
-  placement *= std::min(1.0, 1.0 / std::max(placement.norm(), 1e-12));
+  step.length = placement.norm();
+  placement *= std::min(1.0, 1.0 / std::max(step.length, 1e-12));
   step.placement = prior.placement_sigma.cwiseProduct(placement);
   step.drift =
       prior.drift_factor * (reduced.drift_at_rest + reduced.drift_by_placement * placement);

@@ -11,6 +11,7 @@ namespace isotherm {
 struct AlignmentStep {
   PlacementVector placement = PlacementVector::Zero();
   Eigen::VectorXd drift;
+  double length = 0.0;  ///< The placement's step, in standard deviations of the prior.
   /// The placement's step over what the placement is uncertain by after it (Mahalanobis).
   double in_sigmas = 0.0;
   /// The whole correction's, as certain as it is after this step. The images say nothing of some

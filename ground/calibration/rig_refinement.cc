@@ -27,11 +27,21 @@ struct Level {
 constexpr Level kLevels[] = {
     {8.0, 0.06, 3000}, {4.0, 0.03, 3000}, {2.0, 0.01, 3000}, {0.0, 0.01, kFinestPoints}};
 constexpr int kMaxIterations = 12;
-// The end of the iterations: the step over what the placement is uncertain by. Where blurred images
-// lead need not be exact, nor what goes to and fro at the end, as points come to be compared and
-// cease to be: an error of half a standard deviation in eleven values adds a fortieth to the
-// variance.
-constexpr double kConverged = 0.2, kNearEnough = 0.5;
+/// Says when the iterations end: the step is small against what the placement is uncertain by, or
+/// against the prior.
+struct StepLimit {
+  double in_sigmas;
+  double of_prior;
+
+  bool Holds(const AlignmentStep& step) const {
+    return step.in_sigmas < in_sigmas || step.length < of_prior;
+  }
+};
+// Where blurred images lead need not be exact, nor what goes to and fro at the end, as points come
+// to be compared and cease to be: an error of half a standard deviation in eleven values adds a
+// fortieth to the variance. The second part is a fraction of what is wrong alike in the whole scan
+// (below).
+constexpr StepLimit kConverged{0.2, 0.005}, kNearEnough{0.5, 0.02};
 // Points that held-out images are compared at.
 constexpr std::size_t kHeldOutPoints = 6000;
 // Fewer points with a gradient in temperature are an edge or two, which leave most directions open.
@@ -191,8 +201,8 @@ class Refiner {
   /// Corrects the placement until it does not change any more; false if it still does after many
   /// steps. Fails if too little can be compared.
   Result<bool> Settle(const TextureAlignment& alignment, std::size_t points,
-                      const AlignmentPrior& prior, TrajectoryDrift drift, double converged,
-                      const std::function<void(double)>& progress) {
+                      const AlignmentPrior& prior, TrajectoryDrift drift,
+                      const StepLimit& converged, const std::function<void(double)>& progress) {
     AlignmentStep step;
     PlacementVector last_step = PlacementVector::Zero();
     for (int i = 0; i < kMaxIterations; ++i) {
@@ -212,9 +222,9 @@ class Refiner {
       drift.Add(step.drift);
       if (progress) progress((i + 1.0) / kMaxIterations);
       // The drift follows the placement.
-      if (step.in_sigmas < converged && i > 0) return true;
+      if (converged.Holds(step) && i > 0) return true;
     }
-    return step.in_sigmas < kNearEnough;
+    return kNearEnough.Holds(step);
   }
 
   /// Once more, together with what the tracked poses drift by. The delay stays: a drift along the

@@ -105,6 +105,10 @@ void DepthBiasEquations::AddBend(int node, int stride) {
 
 void DepthBiasEquations::AddView(const WallView& view, std::span<const double> weights,
                                  double sigma) {
+  // Of fewer the plane is not certain.
+  constexpr int kMinPatches = 20;
+  if (std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.0; }) < kMinPatches)
+    return;
   Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(Size(), 3);
   Eigen::Matrix3d planes = Eigen::Matrix3d::Zero();
   double mean_inverse = 0.0;
@@ -133,8 +137,7 @@ std::vector<float> DepthBiasEquations::Solve() const {
   const Eigen::VectorXd reciprocals = information_.ldlt().solve(right_);
   std::vector<float> multipliers;
   for (const double reciprocal : reciprocals)
-    multipliers.push_back(std::clamp(static_cast<float>(1.0 / reciprocal),
-                                     DepthBias::kMinMultiplier, DepthBias::kMaxMultiplier));
+    multipliers.push_back(static_cast<float>(1.0 / reciprocal));
   return multipliers;
 }
 

@@ -34,7 +34,7 @@ class DepthBiasEquations {
   /// depth, as a fraction.
   void AddView(const WallView& view, std::span<const double> weights, double sigma);
 
-  /// The table's multipliers, within what a table may hold.
+  /// The table's multipliers; what cannot be found is beyond what a table may hold (Validate).
   std::vector<float> Solve() const;
 
  private:

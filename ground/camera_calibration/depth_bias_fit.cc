@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -92,7 +93,8 @@ DepthBias FitTable(const std::vector<const WallView*>& views) {
 
 /// How far walls are from planes, root mean square over places in the image and distances, of means
 /// over the views.
-double SystematicError(const std::vector<const WallView*>& views, const DepthBias& bias) {
+std::optional<double> SystematicError(const std::vector<const WallView*>& views,
+                                      const DepthBias& bias) {
   struct Mean {
     double sum = 0.0;
     int count = 0;
@@ -117,7 +119,8 @@ double SystematicError(const std::vector<const WallView*>& views, const DepthBia
     squares += std::pow(place.sum / place.count, 2);
     count += 1.0;
   }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+  if (count == 0.0) return std::nullopt;
+  return std::sqrt(squares / count);
 }
 
 int CountSeenNodes(const std::vector<const WallView*>& views, const DepthBias& table) {
@@ -184,6 +187,12 @@ Result<DepthBiasReport> DepthBiasFit::Solve(const std::function<void(double)>& p
   report.frames = (frames_ + stride_ - 1) / stride_;
   report.walls = views_.size();
   report.bias = FitTable(all);
+  if (Status found = Validate(report.bias); !found.ok()) {
+    return Err(FailedPrecondition(fmt::format(
+        "distances would have to change by more than a camera's can be wrong: is the wall flat, "
+        "and the calibration that of this camera? ({})",
+        found.message())));
+  }
   tell(0.4);
   const std::array<DepthBias, 2> of_halves = {FitTable(halves[0]), FitTable(halves[1])};
   tell(0.8);
@@ -197,8 +206,14 @@ Result<DepthBiasReport> DepthBiasFit::Solve(const std::function<void(double)>& p
       count += 1.0;
     }
   report.halves_rms = std::sqrt(squares / count);
-  report.before_rms = SystematicError(held_out, before_);
-  report.after_rms = SystematicError(held_out, report.bias);
+  const auto before_rms = SystematicError(held_out, before_);
+  const auto after_rms = SystematicError(held_out, report.bias);
+  if (!before_rms || !after_rms) {
+    return Err(FailedPrecondition(
+        "what was held out shows no place of the wall often enough: scan for half a minute"));
+  }
+  report.before_rms = *before_rms;
+  report.after_rms = *after_rms;
   report.near_m = report.bias.distances_m.front();
   report.far_m = report.bias.distances_m.back();
   report.nodes = static_cast<int>(report.bias.multipliers.size());

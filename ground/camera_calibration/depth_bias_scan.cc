@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "common/codec/codec.h"
@@ -28,6 +29,14 @@ Image<float> ToMetres(const Image<std::uint16_t>& raw, double units_per_m,
   return depth_m;
 }
 
+Status CheckSerial(const std::string& recorded, const std::string& in_file) {
+  if (recorded.empty() || in_file.empty() || recorded == in_file) return OkStatus();
+  return FailedPrecondition(fmt::format(
+      "the wall was recorded by the depth camera with serial number {}, the calibration "
+      "is of one with {}: name that of this camera, --rig",
+      recorded, in_file));
+}
+
 Status CheckCamera(const Rig& rig) {
   if (!rig.depth) {
     return FailedPrecondition(
@@ -48,10 +57,13 @@ Result<DepthBiasReport> FindDepthBias(const std::filesystem::path& recording,
   const Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(recording);
   if (!reader) return Err(reader.error());
   const bool is_given = rig.has_value();
+  Result<Rig> recorded = (*reader)->ReadRig();
   if (!is_given) {
-    Result<Rig> recorded = (*reader)->ReadRig();
     if (!recorded) return fail(recorded.error());
     rig = std::move(*recorded);
+  } else if (recorded) {
+    if (Status same = CheckSerial(recorded->depth_serial, rig->depth_serial); !same.ok())
+      return fail(same);
   }
   if (Status status = CheckCamera(*rig); !status.ok()) return fail(status);
   const CameraModel& camera = *rig->depth;

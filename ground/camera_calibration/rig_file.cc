@@ -83,6 +83,9 @@ Status SetCamera(const CalibrationReport& report, const CalibratedCamera& camera
   } else {
     *rig.mutable_depth() = Intrinsics(camera);
     *rig.mutable_depth_calibration() = record;
+    // It was found with the directions of the old lens.
+    if (rig.has_depth_sensor()) rig.mutable_depth_sensor()->clear_bias();
+    rig.clear_depth_bias_calibration();
   }
   return OkStatus();
 }

@@ -19,6 +19,8 @@ constexpr double kMinPatchShare = 0.5;  // Of its pixels that have a depth.
 // A patch with a larger ratio of depths shows an edge.
 constexpr float kMaxPatchDepth = 1.12F;
 constexpr double kMinImageShare = 0.6;  // Of its patches.
+// Fewer do not tell a plane from a bowl.
+constexpr std::size_t kMinPatches = 40;
 // A wall is no wall if more of the patches than this do not lie on it.
 constexpr double kMaxOutside = 0.25;
 constexpr int kFitRounds = 6;
@@ -93,8 +95,11 @@ std::optional<WallView> SeeWall(const CameraModel& depth_camera, double time_s,
     for (int left = 0; left + side <= depth_camera.width; left += side, ++places)
       if (const auto patch = PatchAt(depth_camera, depth_m, left, top, side))
         view.patches.push_back(*patch);
-  const bool is_full = static_cast<double>(view.patches.size()) >= kMinImageShare * places;
-  if (view.patches.empty() || !is_full || !KeepWall(view)) return std::nullopt;
+  const auto fills_the_image = [&] {
+    return view.patches.size() >= kMinPatches &&
+           static_cast<double>(view.patches.size()) >= kMinImageShare * places;
+  };
+  if (!fills_the_image() || !KeepWall(view) || !fills_the_image()) return std::nullopt;
   return view;
 }
 

@@ -24,12 +24,12 @@ namespace {
 constexpr const char* kFooter =
     R"(Finds by what the depth camera's distances have to be multiplied to be right, over the image and the distance:
 walls bend, swell or sink towards the corners. Record a bare flat wall that fills the image, for half a minute:
-from as near as you scan to as far, slowly, turned to either side by 20 degrees now and then. Pictures, corners
-and the floor do no harm if the wall is most of what is seen. A third of the scan is held out and must be
-flatter afterwards.
+from as near as you scan to as far, slowly, turned to either side by 20 degrees now and then. What else is seen
+is left out if it stands off the wall by more than a twentieth of the distance; a frame of less than that harms.
+A third of the scan is held out and must be flatter afterwards.
 
 A wall tells neither how far away it is nor how it is turned: in the middle of the image distances are taken as
-right, and left and right as alike.
+right, and what grows across or down the image near its middle as none.
 
 Without --apply or --output nothing is written. The calibration's depth_sensor.bias is replaced; comments of the
 file are lost, and as it was it is kept beside it (FILE.bak). The ground corrects each depth image by it before
@@ -82,6 +82,8 @@ std::string ReportText(const DepthBiasReport& report) {
   text += fmt::format("unevenness of the wall, of what was held out: {} before, {} after\n",
                       rms(report.before_rms), rms(report.after_rms));
   text += fmt::format("two halves of the scan differ by {:.2f} %\n", 100.0 * report.halves_rms);
+  if (report.bias.distances_m.size() == 1)
+    text += "the wall was seen at one distance, at which the table is taken for all others\n";
   if (report.seen_nodes < report.nodes)
     text += fmt::format(
         "the wall was seen at {} of {} places of the table (image and distance): the others take "

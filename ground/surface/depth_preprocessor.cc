@@ -43,6 +43,7 @@ Image<std::int32_t> MakeRectification(const CameraModel& camera) {
 /// Layers as DepthPreprocessor keeps them.
 std::vector<Image<float>> MakeBiasSteps(const CameraModel& camera, const DepthBias& bias) {
   if (bias.empty()) return {};
+  CHECK(Validate(bias).ok());
   std::vector<Image<float>> steps(bias.distances_m.size(),
                                   Image<float>(camera.width, camera.height));
   const CameraModel ideal = camera.WithoutDistortion();
