@@ -3,32 +3,46 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "common/rig/depth_bias_nodes.h"
 
 namespace isotherm {
 
+NodeShares SharesAt(const DepthBias& table, double x, double y, double measured_m) {
+  const double column = std::clamp(x, 0.0, 1.0) * (table.columns - 1);
+  const double row = std::clamp(y, 0.0, 1.0) * (table.rows - 1);
+  const int left = std::min(static_cast<int>(column), table.columns - 2);
+  const int top = std::min(static_cast<int>(row), table.rows - 2);
+  const double right = column - left, lower = row - top;
+  const std::vector<float>& d = table.distances_m;
+  const auto beyond = std::upper_bound(d.begin(), d.end(), measured_m) - d.begin();
+  const auto last = static_cast<std::ptrdiff_t>(d.size()) - 1;
+  const auto far = static_cast<std::size_t>(std::min(beyond, last));
+  const auto near = static_cast<std::size_t>(std::max<std::ptrdiff_t>(beyond - 1, 0));
+  const double farther = far == near ? 0.0 : (measured_m - d[near]) / (d[far] - d[near]);
+  NodeShares at{};
+  for (std::size_t i = 0; i < at.nodes.size(); ++i) {
+    const bool is_far = (i & 4U) != 0, is_lower = (i & 2U) != 0, is_right = (i & 1U) != 0;
+    const int layer = static_cast<int>(is_far ? far : near);
+    at.nodes[i] =
+        static_cast<std::size_t>((layer * table.rows + top + (is_lower ? 1 : 0)) * table.columns +
+                                 left + (is_right ? 1 : 0));
+    at.shares[i] = (is_far ? farther : 1.0 - farther) * (is_lower ? lower : 1.0 - lower) *
+                   (is_right ? right : 1.0 - right);
+  }
+  return at;
+}
+
 double DepthBias::InLayer(int distance, double x, double y) const {
-  const double column = std::clamp(x, 0.0, 1.0) * (columns - 1);
-  const double row = std::clamp(y, 0.0, 1.0) * (rows - 1);
-  const int left = std::min(static_cast<int>(column), columns - 2);
-  const int top = std::min(static_cast<int>(row), rows - 2);
-  const double right_share = column - left, lower_share = row - top;
-  const auto across = [&](int r) {
-    return (1.0 - right_share) * Node(distance, r, left) +
-           right_share * Node(distance, r, left + 1);
-  };
-  return (1.0 - lower_share) * across(top) + lower_share * across(top + 1);
+  return At(x, y, distances_m[static_cast<std::size_t>(distance)]);
 }
 
 double DepthBias::At(double x, double y, double measured_m) const {
   if (empty()) return 1.0;
-  double multiplier = InLayer(0, x, y);
-  for (std::size_t k = 1; k < distances_m.size(); ++k) {
-    const double share = std::clamp(
-        (measured_m - distances_m[k - 1]) / (distances_m[k] - distances_m[k - 1]), 0.0, 1.0);
-    const int layer = static_cast<int>(k);
-    multiplier += share * (InLayer(layer, x, y) - InLayer(layer - 1, x, y));
-  }
+  const NodeShares at = SharesAt(*this, x, y, measured_m);
+  double multiplier = 0.0;
+  for (std::size_t i = 0; i < at.nodes.size(); ++i)
+    multiplier += at.shares[i] * multipliers[at.nodes[i]];
   return multiplier;
 }
 

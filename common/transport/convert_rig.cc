@@ -7,6 +7,7 @@
 #include "common/transport/conversions.h"
 #include "common/transport/sample_validator.h"
 #include "common/transport/wire_pose.h"
+#include "common/transport/wire_sequence.h"
 
 namespace isotherm {
 namespace {
@@ -108,7 +109,8 @@ void FromWireDepthBias(const isotherm_wire_Rig& from, Rig* rig) {
   // An earlier edge does not send it.
   if (from.depth_bias_columns == 0) return;
   const auto values = [](const auto& sequence) {
-    return std::vector<float>(sequence._buffer, sequence._buffer + sequence._length);
+    const auto elements = Elements(sequence);
+    return std::vector<float>(elements.begin(), elements.end());
   };
   rig->depth_sensor.bias = {.columns = from.depth_bias_columns,
                             .rows = from.depth_bias_rows,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "common/rig/depth_bias_nodes.h"
+
 namespace isotherm {
 namespace {
 
@@ -16,36 +18,6 @@ constexpr double kPrior = 0.03, kPriorBend = 0.005, kPriorStep = 0.01;
 constexpr double kDefined = 1e-6;
 
 }  // namespace
-
-NodeShares SharesAt(const DepthBias& table, const WallPatch& patch) {
-  const double across = patch.across, down = patch.down;
-  const double column = across * (table.columns - 1), row = down * (table.rows - 1);
-  const int left = std::clamp(static_cast<int>(column), 0, table.columns - 2);
-  const int top = std::clamp(static_cast<int>(row), 0, table.rows - 2);
-  const double right = std::clamp(column - left, 0.0, 1.0);
-  const double lower = std::clamp(row - top, 0.0, 1.0);
-  const double distance_m = 1.0 / patch.inverse_depth;
-  const std::vector<float>& d = table.distances_m;
-  const auto beyond = std::upper_bound(d.begin(), d.end(), static_cast<float>(distance_m));
-  const int last = static_cast<int>(d.size()) - 1;
-  const int far = std::clamp(static_cast<int>(beyond - d.begin()), 0, last);
-  const int near = std::clamp(static_cast<int>(beyond - d.begin()) - 1, 0, last);
-  const double farther =
-      far == near ? 0.0
-                  : (distance_m - d[static_cast<std::size_t>(near)]) /
-                        (d[static_cast<std::size_t>(far)] - d[static_cast<std::size_t>(near)]);
-  NodeShares at{};
-  for (int i = 0; i < 8; ++i) {
-    const bool is_far = (i & 4) != 0, is_lower = (i & 2) != 0, is_right = (i & 1) != 0;
-    at.nodes[static_cast<std::size_t>(i)] = static_cast<std::size_t>(
-        ((is_far ? far : near) * table.rows + top + (is_lower ? 1 : 0)) * table.columns + left +
-        (is_right ? 1 : 0));
-    at.shares[static_cast<std::size_t>(i)] = (is_far ? farther : 1.0 - farther) *
-                                             (is_lower ? lower : 1.0 - lower) *
-                                             (is_right ? right : 1.0 - right);
-  }
-  return at;
-}
 
 DepthBiasEquations::DepthBiasEquations(const DepthBias& table)
     : table_(table),
@@ -71,10 +43,8 @@ void DepthBiasEquations::AddSmoothness() {
 }
 
 void DepthBiasEquations::AddMiddle(int layer) {
-  WallPatch middle{};
-  middle.across = middle.down = 0.5F;
-  middle.inverse_depth = 1.0F / table_.distances_m[static_cast<std::size_t>(layer)];
-  const NodeShares at = SharesAt(table_, middle);
+  const NodeShares at =
+      SharesAt(table_, 0.5, 0.5, table_.distances_m[static_cast<std::size_t>(layer)]);
   std::map<int, double> shares;
   for (std::size_t i = 0; i < at.nodes.size(); ++i)
     shares[static_cast<int>(at.nodes[i])] += at.shares[i];
@@ -118,7 +88,7 @@ void DepthBiasEquations::AddView(const WallView& view, std::span<const double> w
     const WallPatch& patch = view.patches[i];
     const double weight = weights[i] / std::pow(sigma * mean_inverse, 2);
     if (weight == 0.0) continue;
-    const NodeShares at = SharesAt(table_, patch);
+    const NodeShares at = SharesAt(table_, patch.across, patch.down, patch.Distance_m());
     const Eigen::Vector3d ray = patch.Ray();
     planes += weight * ray * ray.transpose();
     for (std::size_t a = 0; a < 8; ++a) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,14 +9,6 @@
 #include "ground/camera_calibration/wall_view.h"
 
 namespace isotherm {
-
-/// The nodes of a table (DepthBias) and their shares at a patch.
-struct NodeShares {
-  std::array<std::size_t, 8> nodes;
-  std::array<double, 8> shares;
-};
-
-NodeShares SharesAt(const DepthBias& table, const WallPatch& patch);
 
 /// Solves for the reciprocals of a table's multipliers, to which inverse depths are proportional:
 /// they and the planes of the views solve linear equations together.

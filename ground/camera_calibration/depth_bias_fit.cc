@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "common/base/quantile.h"
+#include "common/rig/depth_bias_nodes.h"
 #include "ground/camera_calibration/depth_bias_equations.h"
 
 namespace isotherm {
@@ -28,20 +30,13 @@ constexpr int kMinMean = 5;
 // Parts of a scan that are held out or taken together.
 constexpr double kPart_s = 1.0, kMinSeconds = 6.0;
 
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The patches' inverse depths as a table corrects them.
 std::vector<double> Corrected(const WallView& view, const DepthBias& bias) {
   std::vector<double> corrected;
   corrected.reserve(view.patches.size());
   for (const WallPatch& patch : view.patches) {
-    const double inverse = patch.inverse_depth;
-    corrected.push_back(inverse / bias.At(patch.across, patch.down, 1.0 / inverse));
+    corrected.push_back(patch.inverse_depth /
+                        bias.At(patch.across, patch.down, patch.Distance_m()));
   }
   return corrected;
 }
@@ -50,7 +45,7 @@ std::vector<double> Corrected(const WallView& view, const DepthBias& bias) {
 DepthBias EmptyTable(const std::vector<const WallView*>& views) {
   std::vector<double> distances;
   for (const WallView* view : views)
-    for (const WallPatch& patch : view->patches) distances.push_back(1.0 / patch.inverse_depth);
+    for (const WallPatch& patch : view->patches) distances.push_back(patch.Distance_m());
   std::sort(distances.begin(), distances.end());
   const double near = distances[distances.size() / 50];
   const double far = distances[distances.size() - 1 - distances.size() / 50];
@@ -81,11 +76,12 @@ DepthBias FitTable(const std::vector<const WallView*>& views) {
       }
     }
     // Of a normal distribution the median is 0.67 standard deviations.
-    const double sigma = std::max(1e-5, MedianOf(distances) / 0.6745);
+    const double sigma = std::max(1e-5, TakeMedian(distances) / 0.6745);
     DepthBiasEquations equations(table);
     equations.AddPrior();
     for (std::size_t i = 0; i < views.size(); ++i) equations.AddView(*views[i], weights[i], sigma);
     table.multipliers = equations.Solve();
+    if (!Validate(table).ok()) break;  // It gets no better, and may hold what is no number.
     cut = std::clamp(kCutSigmas * sigma, 1e-4, kMaxOffWall);
   }
   return table;
@@ -105,9 +101,9 @@ std::optional<double> SystematicError(const std::vector<const WallView*>& views,
     for (std::size_t i = 0; i < view->patches.size(); ++i) {
       if (std::abs(fit.off[i]) > kMaxOffWall) continue;
       const WallPatch& patch = view->patches[i];
-      const double octave = std::log(1.0 / patch.inverse_depth) / std::log(kDistanceRatio);
+      const double band = std::log(patch.Distance_m()) / std::log(kDistanceRatio);
       Mean& place =
-          places[{static_cast<int>(std::floor(octave)), static_cast<int>(patch.across * 16.0F),
+          places[{static_cast<int>(std::floor(band)), static_cast<int>(patch.across * 16.0F),
                   static_cast<int>(patch.down * 12.0F)}];
       place.sum += fit.off[i];
       ++place.count;
@@ -127,7 +123,7 @@ int CountSeenNodes(const std::vector<const WallView*>& views, const DepthBias& t
   std::vector<double> seen(table.multipliers.size(), 0.0);
   for (const WallView* view : views)
     for (const WallPatch& patch : view->patches) {
-      const NodeShares at = SharesAt(table, patch);
+      const NodeShares at = SharesAt(table, patch.across, patch.down, patch.Distance_m());
       for (std::size_t i = 0; i < 8; ++i) seen[at.nodes[i]] += at.shares[i];
     }
   return static_cast<int>(
@@ -199,7 +195,7 @@ Result<DepthBiasReport> DepthBiasFit::Solve(const std::function<void(double)>& p
   double squares = 0.0, count = 0.0;
   for (const WallView* view : held_out)
     for (const WallPatch& patch : view->patches) {
-      const double distance_m = 1.0 / patch.inverse_depth;
+      const double distance_m = patch.Distance_m();
       squares += std::pow(of_halves[0].At(patch.across, patch.down, distance_m) -
                               of_halves[1].At(patch.across, patch.down, distance_m),
                           2);

@@ -18,6 +18,7 @@ struct WallPatch {
   float weight;         ///< Fraction of its pixels that have a depth.
 
   Eigen::Vector3d Ray() const { return {x, y, 1.0}; }
+  double Distance_m() const { return 1.0 / inverse_depth; }
 };
 
 /// An image of a wall.

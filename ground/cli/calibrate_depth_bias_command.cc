@@ -111,9 +111,9 @@ Json ReportJson(const DepthBiasReport& report) {
 }
 
 void SetBias(const Arguments& arguments, const DepthBiasReport& report, RigCalibration& rig) {
-  Rig found;
-  found.depth_sensor.bias = report.bias;
-  *rig.mutable_depth_sensor()->mutable_bias() = ToProto(found).depth_sensor().bias();
+  DepthSensorModel found;
+  found.bias = report.bias;
+  *rig.mutable_depth_sensor()->mutable_bias() = ToProto(found).bias();
   CalibrationRecord& record = *rig.mutable_depth_bias_calibration();
   record.Clear();
   record.set_date(Today());
