@@ -74,6 +74,8 @@ Doubts DoubtsAboutRecords(const RigCalibration& rig, std::chrono::sys_days today
                        "see whether it still fits, `isotherm calibrate check RECORDING`"};
   constexpr Part kDepthBias{"the depth camera's distances",
                             "calibrate them again, `isotherm calibrate depth-bias`"};
+  constexpr Part kReadings{"the thermal camera's readings",
+                           "calibrate them again, `isotherm calibrate radiometric`"};
   constexpr Part kAll{"the rig", "see whether it still fits, `isotherm calibrate check RECORDING`"};
   Doubts doubts;
   bool has_records = false;
@@ -88,6 +90,7 @@ Doubts DoubtsAboutRecords(const RigCalibration& rig, std::chrono::sys_days today
   add(kPose, rig.has_pose_calibration(), rig.pose_calibration());
   if (!has_records) AddAge(kAll, rig.date(), today, limits, doubts);
   add(kDepthBias, rig.has_depth_bias_calibration(), rig.depth_bias_calibration());
+  add(kReadings, rig.has_radiometric_calibration(), rig.radiometric_calibration());
   return doubts;
 }
 

@@ -111,6 +111,23 @@ DepthSensorProperties ToProto(const DepthSensorModel& sensor) {
   return properties;
 }
 
+RadiometricCorrection FromProto(const RadiometricCorrectionProperties& correction) {
+  return {{correction.reading_celsius().begin(), correction.reading_celsius().end()},
+          {correction.correction_k().begin(), correction.correction_k().end()},
+          {correction.sigma_k().begin(), correction.sigma_k().end()}};
+}
+
+RadiometricCorrectionProperties ToProto(const RadiometricCorrection& correction) {
+  RadiometricCorrectionProperties properties;
+  const auto assign = [](const std::vector<float>& values, auto* field) {
+    field->Assign(values.begin(), values.end());
+  };
+  assign(correction.readings_celsius, properties.mutable_reading_celsius());
+  assign(correction.corrections_k, properties.mutable_correction_k());
+  assign(correction.sigmas_k, properties.mutable_sigma_k());
+  return properties;
+}
+
 ThermalSensorModel FromProto(const ThermalSensorProperties& sensor) {
   ThermalSensorModel model{.time_constant_s = sensor.time_constant_s(),
                            .row_readout_s = sensor.row_readout_s(),
@@ -118,7 +135,12 @@ ThermalSensorModel FromProto(const ThermalSensorProperties& sensor) {
                            .lens = {},
                            .scene_influence = {sensor.scene_influence().near_fraction(),
                                                sensor.scene_influence().near_sigma_px(),
-                                               sensor.scene_influence().total_fraction()}};
+                                               sensor.scene_influence().total_fraction()},
+                           .radiometric_correction = FromProto(sensor.radiometric_correction())};
+  if (sensor.has_housing_drift()) {
+    const HousingDriftProperties& drift = sensor.housing_drift();
+    model.housing_drift = {drift.error_per_kelvin(), drift.sigma()};
+  }
   if (sensor.has_pixel_pitch_um()) model.pixel_pitch_m = sensor.pixel_pitch_um() * kMPerUm;
   if (sensor.has_lens()) {
     const ThermalLens& lens = sensor.lens();
@@ -143,6 +165,13 @@ ThermalSensorProperties ToProto(const ThermalSensorModel& sensor) {
     influence.set_near_fraction(sensor.scene_influence.near_fraction);
     influence.set_near_sigma_px(sensor.scene_influence.near_sigma_px);
     influence.set_total_fraction(sensor.scene_influence.total_fraction);
+  }
+  if (!sensor.radiometric_correction.empty())
+    *properties.mutable_radiometric_correction() = ToProto(sensor.radiometric_correction);
+  if (sensor.housing_drift) {
+    HousingDriftProperties& drift = *properties.mutable_housing_drift();
+    drift.set_error_per_kelvin(sensor.housing_drift->error_per_kelvin);
+    drift.set_sigma(sensor.housing_drift->sigma);
   }
   return properties;
 }

@@ -104,6 +104,29 @@ depth_sensor { bias { columns: 2 rows: 2 distance_m: 0.5 multiplier: [1.0, 1.01,
               AllOf(HasSubstr("rig.textproto"), HasSubstr("depth_sensor.bias.multiplier")));
 }
 
+TEST(RigCalibrationTest, ARadiometricCorrectionIsReadAndWrittenBack) {
+  const std::string text = std::string(kRigText) + R"(
+thermal_sensor { radiometric_correction { reading_celsius: [20, 100] correction_k: [0.5, -1] sigma_k: [0.1, 0.2] }
+                 housing_drift { error_per_kelvin: 4 sigma: 0.3 } })";
+  const Result<Rig> rig = ParseRigCalibration(text, "rig.textproto");
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_NEAR(rig->thermal_sensor.radiometric_correction.At(60.0), -0.25, 1e-6);
+  const Result<Rig> again = ParseRigCalibration(ToText(*rig), "second");
+  ASSERT_TRUE(again) << again.error().message();
+  const RadiometricCorrection& first = rig->thermal_sensor.radiometric_correction;
+  const RadiometricCorrection& second = again->thermal_sensor.radiometric_correction;
+  EXPECT_EQ(second.readings_celsius, first.readings_celsius);
+  EXPECT_EQ(second.corrections_k, first.corrections_k);
+  EXPECT_EQ(second.sigmas_k, first.sigmas_k);
+  ASSERT_TRUE(again->thermal_sensor.housing_drift);
+  EXPECT_EQ(again->thermal_sensor.housing_drift->error_per_kelvin, 4.0);
+  EXPECT_EQ(again->thermal_sensor.housing_drift->sigma, 0.3);
+  EXPECT_THAT(RigError(ReplaceFirst(text, "sigma: 0.3", "sigma: -1")),
+              HasSubstr("thermal_sensor.housing_drift"));
+  EXPECT_THAT(RigError(ReplaceFirst(text, "0.2]", "0.2, 1.0]")),
+              AllOf(HasSubstr("rig.textproto"), HasSubstr("radiometric_correction")));
+}
+
 /// A file from before these fields existed means what the options' defaults were then.
 TEST(RigCalibrationTest, ARigFileWithoutSensorsHasThoseOfBefore) {
   const Rig rig = ParseRigCalibration(kRigText, "rig").value();

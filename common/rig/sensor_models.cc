@@ -26,6 +26,18 @@ Status CheckSceneInfluence(const SceneInfluence& influence) {
   return OkStatus();
 }
 
+Status CheckHousingDrift(const std::optional<HousingDrift>& drift) {
+  constexpr double kMax = HousingDrift::kMaxErrorPerKelvin;
+  if (!drift || (drift->error_per_kelvin >= -kMax && drift->error_per_kelvin <= kMax &&
+                 drift->sigma >= 0.0 && drift->sigma <= kMax)) {
+    return OkStatus();
+  }
+  return InvalidArgument(fmt::format(
+      "thermal_sensor.housing_drift: error_per_kelvin must be -{0}..{0} and sigma 0..{0}, got {1} "
+      "and {2}",
+      kMax, drift->error_per_kelvin, drift->sigma));
+}
+
 }  // namespace
 
 Status Validate(const DepthSensorModel& sensor) {
@@ -62,6 +74,8 @@ Status Validate(const ThermalSensorModel& sensor) {
                     1e6 * *sensor.pixel_pitch_m));
   }
   ISOTHERM_RETURN_IF_ERROR(CheckSceneInfluence(sensor.scene_influence));
+  ISOTHERM_RETURN_IF_ERROR(Validate(sensor.radiometric_correction));
+  ISOTHERM_RETURN_IF_ERROR(CheckHousingDrift(sensor.housing_drift));
   if (!sensor.lens) return OkStatus();
   const LensModel& lens = *sensor.lens;
   if (!sensor.pixel_pitch_m || !(lens.focal_length_m > 0.0 && std::isfinite(lens.focal_length_m)) ||

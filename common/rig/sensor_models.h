@@ -4,6 +4,7 @@
 
 #include "common/base/status.h"
 #include "common/rig/depth_bias.h"
+#include "common/rig/radiometric_correction.h"
 
 namespace isotherm {
 
@@ -43,6 +44,16 @@ struct SceneInfluence {
   static constexpr double kMaxSigma_px = 1000.0;
 };
 
+/// Tells how readings drift after a NUC as the housing, whose radiation falls on the detector,
+/// warms up (thesis 3.2.3, fig. 3.4b).
+struct HousingDrift {
+  double error_per_kelvin = 0.0;  ///< Of all readings, for each kelvin since the NUC.
+  double sigma = 0.0;             ///< Its standard uncertainty.
+
+  /// A PI 450 has about 4.
+  static constexpr double kMaxErrorPerKelvin = 50.0;
+};
+
 /// Says how a thermal camera takes its images. The defaults are those of a microbolometer whose
 /// lens is not known.
 struct ThermalSensorModel {
@@ -51,6 +62,9 @@ struct ThermalSensorModel {
   std::optional<double> pixel_pitch_m;
   std::optional<LensModel> lens;
   SceneInfluence scene_influence;
+  /// Of readings without the scene's influence and the housing's drift.
+  RadiometricCorrection radiometric_correction{};
+  std::optional<HousingDrift> housing_drift{};
 };
 
 /// The message names the field of the rig file.

@@ -91,6 +91,8 @@ void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
         SceneInfluence::kMinSigma_px, SceneInfluence::kMaxSigma_px);
   check("thermal.expert.scene_influence.total_fraction", influence.total_fraction(), 0.0,
         SceneInfluence::kMaxFraction);
+  check("thermal.expert.offset_error_k", thermal.expert().offset_error_k(), -50.0, 50.0);
+  check("thermal.expert.gain_error", thermal.expert().gain_error(), -0.2, 0.2);
   CheckRays(thermal.expert(), check);
 }
 
@@ -134,6 +136,7 @@ Status Validate(const SimulationOptions& as_given) {
   // The hottest parts of a scene are never hotter than this, the coldest not colder than the
   // surroundings.
   if (scene.has_hot_celsius()) check("scene.hot_celsius", scene.hot_celsius(), 0.0, 1400.0);
+  check("scene.hole_radius_m", scene.hole_radius_m(), 0.002, 0.4);
   CheckDepth(options.depth(), check);
   CheckThermal(options.thermal(), check);
   const ShutterOptions& shutter = options.shutter();
@@ -298,6 +301,8 @@ std::string SceneName(const SimulationOptions& options) {
       return "corner-sphere";
     case FLAT_WALL:
       return "flat-wall";
+    case APERTURE_PLATE:
+      return "aperture-plate";
     case FURNACE_DOOR:
       break;
   }

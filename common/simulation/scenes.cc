@@ -15,6 +15,8 @@ StagedScene MakeScene(const SceneOptions& options) {
       return MakePlaneScene(options);
     case FLAT_WALL:
       return MakeFlatWallScene(options);
+    case APERTURE_PLATE:
+      return MakeAperturePlateScene(options);
     case CORNER_SPHERE:
       return MakeCornerSphereScene(options);
     case FURNACE_DOOR:

@@ -34,6 +34,7 @@ StagedScene MakeFurnaceDoorScene(const SceneOptions& options);
 StagedScene MakeCalibratorScene(const SceneOptions& options);
 StagedScene MakePlaneScene(const SceneOptions& options);
 StagedScene MakeFlatWallScene(const SceneOptions& options);
+StagedScene MakeAperturePlateScene(const SceneOptions& options);
 StagedScene MakeCornerSphereScene(const SceneOptions& options);
 
 }  // namespace isotherm

@@ -25,6 +25,8 @@ ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOp
       noise_radiance_(options.expert().netd_kelvin() *
                       PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
       readout_s_(options.expert().readout_s()),
+      offset_error_k_(options.expert().offset_error_k()),
+      gain_error_(options.expert().gain_error()),
       influence_(InfluenceOf(options)),
       blur_weights_(GaussianWeights(options.expert().blur_px())) {}
 
@@ -116,7 +118,8 @@ Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream, Scratch& 
     const double measured = static_cast<double>(radiance[i]) +
                             noise_radiance_ * static_cast<double>(NormalNoise(noise_stream, i));
     // NaN (out of the radiometric range) and what 16 bits cannot say become 0 = no value.
-    out[i] = scale_.CountOf(band_.CelsiusFromRadiance(measured));
+    const double celsius = band_.CelsiusFromRadiance(measured);
+    out[i] = scale_.CountOf(celsius + offset_error_k_ + gain_error_ * celsius);
   }
   return temperature_raw;
 }

@@ -68,6 +68,7 @@ class ThermalSensor {
   const RadiometricScale scale_;
   const double noise_radiance_;
   const double readout_s_;
+  const double offset_error_k_, gain_error_;
   const SceneInfluence influence_;
   std::vector<float> blur_weights_;  ///< From the centre outwards; one weight = sharp.
 };

@@ -57,6 +57,14 @@ class ThermalSensorTest : public ::testing::Test {
   SimulatedThermalOptions options_ = IdealThermalCamera({});
 };
 
+TEST_F(ThermalSensorTest, ReadingsAreWrongByOffsetAndGain) {
+  options_.mutable_expert()->set_offset_error_k(1.5);
+  options_.mutable_expert()->set_gain_error(-0.02);
+  const RigidTransform at_origin = RigidTransform::Identity();
+  EXPECT_NEAR(Measure(Render(BlackWall(30.0), at_origin)).mean, 30.9, 0.001);
+  EXPECT_NEAR(Measure(Render(BlackWall(200.0), at_origin)).mean, 197.5, 0.001);
+}
+
 TEST_F(ThermalSensorTest, ItsRangeDecidesWhatIsHotterThanItsScale) {
   options_.mutable_expert()->set_netd_kelvin(0.0);
   const Scene wall = BlackWall(850.0);

@@ -89,33 +89,43 @@ void ToWireSensors(const Rig& rig, isotherm_wire_Rig* to) {
   to->has_sensors = true;
 }
 
+/// Makes `out` point to what `values` holds.
+void ToWireFloats(const std::vector<float>& values, auto& out) {
+  const auto length = static_cast<std::uint32_t>(values.size());
+  out = {._maximum = length,
+         ._length = length,
+         // DDS reads only.
+         ._buffer = const_cast<float*>(values.data()),
+         ._release = false};
+}
+
+std::vector<float> FromWireFloats(const auto& sequence) {
+  const auto elements = Elements(sequence);
+  return std::vector<float>(elements.begin(), elements.end());
+}
+
 /// Points to what `bias` holds.
 void ToWireDepthBias(const DepthBias& bias, isotherm_wire_Rig* to) {
-  const auto sequence = [](const std::vector<float>& values, auto& out) {
-    const auto length = static_cast<std::uint32_t>(values.size());
-    out = {._maximum = length,
-           ._length = length,
-           // DDS reads only.
-           ._buffer = const_cast<float*>(values.data()),
-           ._release = false};
-  };
   to->depth_bias_columns = static_cast<std::uint8_t>(bias.columns);
   to->depth_bias_rows = static_cast<std::uint8_t>(bias.rows);
-  sequence(bias.distances_m, to->depth_bias_distances_m);
-  sequence(bias.multipliers, to->depth_bias_multipliers);
+  ToWireFloats(bias.distances_m, to->depth_bias_distances_m);
+  ToWireFloats(bias.multipliers, to->depth_bias_multipliers);
+}
+
+/// Points to what `correction` holds.
+void ToWireRadiometricCorrection(const RadiometricCorrection& correction, isotherm_wire_Rig* to) {
+  ToWireFloats(correction.readings_celsius, to->radiometric_readings_celsius);
+  ToWireFloats(correction.corrections_k, to->radiometric_corrections_k);
+  ToWireFloats(correction.sigmas_k, to->radiometric_sigmas_k);
 }
 
 void FromWireDepthBias(const isotherm_wire_Rig& from, Rig* rig) {
   // An earlier edge does not send it.
   if (from.depth_bias_columns == 0) return;
-  const auto values = [](const auto& sequence) {
-    const auto elements = Elements(sequence);
-    return std::vector<float>(elements.begin(), elements.end());
-  };
   rig->depth_sensor.bias = {.columns = from.depth_bias_columns,
                             .rows = from.depth_bias_rows,
-                            .distances_m = values(from.depth_bias_distances_m),
-                            .multipliers = values(from.depth_bias_multipliers)};
+                            .distances_m = FromWireFloats(from.depth_bias_distances_m),
+                            .multipliers = FromWireFloats(from.depth_bias_multipliers)};
 }
 
 void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
@@ -164,6 +174,12 @@ std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, R
   FromWireScale(from, rig);
   FromWireSceneInfluence(from, rig);
   FromWireDepthBias(from, rig);
+  rig->thermal_sensor.radiometric_correction = {FromWireFloats(from.radiometric_readings_celsius),
+                                                FromWireFloats(from.radiometric_corrections_k),
+                                                FromWireFloats(from.radiometric_sigmas_k)};
+  if (from.has_housing_drift) {
+    rig->thermal_sensor.housing_drift = {from.housing_error_per_kelvin, from.housing_error_sigma};
+  }
   return CheckRig(*rig);
 }
 
@@ -212,6 +228,11 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   to->scene_total_fraction = rig.thermal_sensor.scene_influence.total_fraction;
   to->has_scene_influence = true;
   ToWireDepthBias(rig.depth_sensor.bias, to);
+  ToWireRadiometricCorrection(rig.thermal_sensor.radiometric_correction, to);
+  const std::optional<HousingDrift>& drift = rig.thermal_sensor.housing_drift;
+  to->has_housing_drift = drift.has_value();
+  to->housing_error_per_kelvin = drift ? drift->error_per_kelvin : 0.0;
+  to->housing_error_sigma = drift ? drift->sigma : 0.0;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {

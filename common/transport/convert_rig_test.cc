@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <isotherm_frames.h>
 
@@ -7,6 +8,8 @@
 
 namespace isotherm {
 namespace {
+
+using ::testing::ElementsAre;
 
 RigDescription SomeRig() {
   RigDescription description;
@@ -118,6 +121,64 @@ TEST(ConvertRigTest, ADepthBiasThatCannotBeIsRefused) {
   sent = SomeRig();
   sent.rig.depth_sensor.bias = {2, 2, {0.5F}, {1.0F, 7.0F, 1.2F, 1.0F}};
   EXPECT_TRUE(refuses([](isotherm_wire_Rig&) {}));
+}
+
+TEST(ConvertRigTest, AnEdgeThatSendsNoneKnowsOfNoRadiometricCorrection) {
+  isotherm_wire_Rig wire{};
+  RigDescription sent = SomeRig();
+  sent.rig.thermal_sensor.radiometric_correction = {{20.0F, 120.0F}, {0.5F, -1.2F}, {0.1F, 0.2F}};
+  ToWire(sent, &wire);
+  RigDescription received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  const RadiometricCorrection& correction = received.rig.thermal_sensor.radiometric_correction;
+  EXPECT_THAT(correction.readings_celsius, ElementsAre(20.0F, 120.0F));
+  EXPECT_THAT(correction.corrections_k, ElementsAre(0.5F, -1.2F));
+  EXPECT_THAT(correction.sigmas_k, ElementsAre(0.1F, 0.2F));
+  wire.radiometric_readings_celsius = {};
+  wire.radiometric_corrections_k = {};
+  wire.radiometric_sigmas_k = {};
+  received = RigDescription();
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_TRUE(received.rig.thermal_sensor.radiometric_correction.empty());
+}
+
+TEST(ConvertRigTest, AnEdgeThatSendsNoneKnowsOfNoHousingDrift) {
+  isotherm_wire_Rig wire{};
+  RigDescription sent = SomeRig();
+  sent.rig.thermal_sensor.housing_drift = HousingDrift{4.0, 0.5};
+  ToWire(sent, &wire);
+  RigDescription received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  ASSERT_TRUE(received.rig.thermal_sensor.housing_drift);
+  EXPECT_EQ(received.rig.thermal_sensor.housing_drift->error_per_kelvin, 4.0);
+  EXPECT_EQ(received.rig.thermal_sensor.housing_drift->sigma, 0.5);
+  wire.housing_error_per_kelvin = 1e9;
+  EXPECT_EQ(FromWire(wire, &received), RefusalCause::kOutOfRange);
+  wire.has_housing_drift = false;
+  received = RigDescription();
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_FALSE(received.rig.thermal_sensor.housing_drift);
+}
+
+TEST(ConvertRigTest, ARadiometricCorrectionThatCannotBeIsRefused) {
+  RigDescription sent = SomeRig();
+  sent.rig.thermal_sensor.radiometric_correction = {{20.0F, 120.0F}, {0.5F, -1.2F}, {0.1F, 0.2F}};
+  const auto refuses = [&](const auto& change) {
+    isotherm_wire_Rig wire{};
+    ToWire(sent, &wire);
+    change(wire);
+    RigDescription received;
+    return FromWire(wire, &received).has_value();
+  };
+  EXPECT_FALSE(refuses([](isotherm_wire_Rig&) {}));
+  // The sample ends within it.
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.radiometric_sigmas_k = {}; }));
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.radiometric_corrections_k._length = 1; }));
+  sent.rig.thermal_sensor.radiometric_correction.corrections_k[1] = 1e9F;
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig&) {}));
+  sent.rig.depth.reset();
+  sent.rig.thermal.reset();
+  EXPECT_TRUE(refuses([](isotherm_wire_Rig&) {})) << "nor without cameras";
 }
 
 TEST(ConvertRigTest, ASceneInfluenceThatCannotBeIsRefused) {

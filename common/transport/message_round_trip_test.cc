@@ -82,7 +82,9 @@ Rig MakeRig() {
       .row_readout_s = 1e-4,
       .pixel_pitch_m = 25e-6,
       .lens = LensModel{.focal_length_m = 0.01, .f_number = 1.0, .focus_m = 0.5},
-      .scene_influence = {.near_fraction = 0.04, .near_sigma_px = 35.0, .total_fraction = 0.03}};
+      .scene_influence = {.near_fraction = 0.04, .near_sigma_px = 35.0, .total_fraction = 0.03},
+      .radiometric_correction = {{10.0F, 90.0F}, {0.3F, -0.7F}, {0.2F, 0.25F}},
+      .housing_drift = HousingDrift{3.5, 0.2}};
   return rig;
 }
 

@@ -13,6 +13,7 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
   AddCalibrateTimeCommand(*calibrate, body);
   AddCalibrateRefineCommand(*calibrate, body);
   AddCalibrateDepthBiasCommand(*calibrate, body);
+  AddCalibrateRadiometricCommand(*calibrate, body);
   AddCalibrateCheckCommand(*calibrate, body);
 }
 

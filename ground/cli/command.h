@@ -60,6 +60,7 @@ void AddCalibrateRefineCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateCheckCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateCameraCommands(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateDepthBiasCommand(CLI::App& calibrate, CommandBody& body);
+void AddCalibrateRadiometricCommand(CLI::App& calibrate, CommandBody& body);
 void AddCalibrateRigCommand(CLI::App& calibrate, CommandBody& body);
 
 }  // namespace isotherm

@@ -157,6 +157,12 @@ void AppendSensors(const Rig& rig, std::string& text) {
                     thermal.scene_influence.near_fraction, thermal.scene_influence.near_sigma_px,
                     thermal.scene_influence.total_fraction);
   }
+  if (const RadiometricCorrection& correction = thermal.radiometric_correction;
+      !correction.empty()) {
+    text += fmt::format(", readings corrected by {:+.2f} K at {:.0f} °C to {:+.2f} K at {:.0f} °C",
+                        correction.corrections_k.front(), correction.readings_celsius.front(),
+                        correction.corrections_k.back(), correction.readings_celsius.back());
+  }
   if (thermal.pixel_pitch_m)
     text += fmt::format(", pixels of {:g} um", 1e6 * *thermal.pixel_pitch_m);
   if (thermal.lens) {

@@ -50,7 +50,7 @@ ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float mi
       depth_camera_(rig.depth->WithoutDistortion()),
       min_weight_(min_weight),
       filter_(filter),
-      rectifier_(*rig.thermal, SceneInfluence{}),
+      rectifier_(*rig.thermal, {}),
       nearest_m_(rectifier_.ideal_camera().width, rectifier_.ideal_camera().height),
       vertices_(rig.depth->width, rig.depth->height) {}
 

@@ -11,7 +11,7 @@
 
 namespace isotherm {
 HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options)
-    : scan_(scan), options_(options), rectifier_(*scan.rig.thermal, options.scene_influence) {}
+    : scan_(scan), options_(options), rectifier_(*scan.rig.thermal, options.corrections) {}
 
 std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
   const std::vector<StampedPose>& poses = scan_.trajectory.poses();
@@ -27,7 +27,7 @@ std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
                      ToSeconds(time - before.time) / interval_s);
 }
 
-void HeldOutViews::Compare(const ThermalFrame& frame) {
+void HeldOutViews::Compare(const ThermalFrame& frame, const NucAge& nuc) {
   CHECK(frame.valid);
   const CameraModel& camera = *scan_.rig.thermal;
   if (frame.temperature_raw.width() != camera.width ||
@@ -42,7 +42,8 @@ void HeldOutViews::Compare(const ThermalFrame& frame) {
   }
   ++report_.frames;
   const RigidTransform T_world_thermal = *T_world_depth * scan_.rig.T_thermal_depth->inverse();
-  rectifier_.Rectify(frame.temperature_raw, frame.scale, /*apron=*/0, scan_.pool, celsius_);
+  rectifier_.Rectify(frame.temperature_raw, options_.corrections.WithoutDrift(frame.scale, nuc),
+                     /*apron=*/0, scan_.pool, celsius_);
   raycaster_.Cast(scan_.tsdf(), rectifier_.ideal_camera(), InFirstMap(T_world_thermal),
                   options_.min_weight, scan_.pool, maps_);
   SampleView(maps_, T_world_thermal.translation(), scan_.tsdf(), scan_.thermal(), scan_.pool,

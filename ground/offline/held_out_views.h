@@ -22,7 +22,7 @@ struct HeldOutOptions {
   /// The scanned surface. nullopt: a temperature is predicted to be seen from everywhere as from
   /// where it was measured.
   std::optional<SmoothSurface> surface;
-  SceneInfluence scene_influence;  ///< Taken out of the frames, as it was for the model.
+  ReadingCorrections corrections;  ///< Of the frames, as they were made for the model.
 };
 
 /// Predicts thermal frames by casting the model of a finished scan from where they were taken.
@@ -32,8 +32,8 @@ class HeldOutViews {
   /// The pipeline of `scan` must outlive it. CheckThermalFusion(scan.rig) is ok.
   HeldOutViews(const ScanModel& scan, const HeldOutOptions& options);
 
-  /// `frame` is valid (CHECK).
-  void Compare(const ThermalFrame& frame);
+  /// `frame` is valid (CHECK), `nuc` its own.
+  void Compare(const ThermalFrame& frame, const NucAge& nuc);
   const HeldOutReport& report() const { return report_; }
 
  private:

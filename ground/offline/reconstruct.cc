@@ -273,22 +273,27 @@ Status CompareHeldOut(const ReconstructRequest& request, const Rig& rig,
   const Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(request.recording);
   if (!reader) return reader.error();
   std::size_t read = 0;
+  NucEpochs epochs;
   while (read < stamps.size()) {
     Result<std::optional<RecordedItem>> item = (*reader)->Next();
     if (!item) continue;
     if (!*item) break;
     auto* recorded = std::get_if<RecordedThermal>(&**item);
-    if (recorded == nullptr || !recorded->frame.valid) continue;
+    if (recorded == nullptr) continue;
     ThermalFrame frame;
     frame.header = recorded->frame.header;
     frame.header.capture_time += FromSeconds(rig.thermal_delay_s);
+    frame.seconds_since_nuc = recorded->frame.seconds_since_nuc;
+    frame.housekeeping = recorded->frame.housekeeping;
+    frame.valid = recorded->frame.valid;
+    const NucAge nuc = epochs.Follow(frame);
+    if (!frame.valid) continue;
     if (!std::ranges::binary_search(stamps, frame.header.capture_time)) continue;
     Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded->frame.image);
     if (!image) continue;  // Counted when it was not held out.
     frame.temperature_raw = std::move(*image);
     frame.scale = recorded->frame.scale;
-    frame.valid = true;
-    views.Compare(frame);
+    views.Compare(frame, nuc);
     ++read;
     if (request.progress) {
       request.progress(kPassesFraction + (1.0 - kPassesFraction) * static_cast<double>(read) /
@@ -362,7 +367,7 @@ Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int
       .max_gap_s = scan->options.thermal().expert().max_depth_gap_s(),
       .min_weight = static_cast<float>(scan->options.export_().expert().min_weight()),
       .surface = surface,
-      .scene_influence = CorrectedInfluence(scan->options.thermal(), scan->rig->thermal_sensor)};
+      .corrections = CorrectionsOf(scan->options.thermal(), scan->rig->thermal_sensor)};
   HeldOutViews views(scan->pipeline->model(), options);
   if (Status status = CompareHeldOut(request, *scan->rig, driver.held_out(), views); !status.ok()) {
     return Err(status);

@@ -21,6 +21,11 @@ CameraUncertainty UncertaintyOf(const ThermalOptions& options, const ThermalSens
   const double left = options.expert().correct_scene_influence() ? kLeftOfSceneInfluence : 1.0;
   CameraUncertainty uncertainty;
   uncertainty.scene_influence = left * sensor.scene_influence.Total();
+  if (sensor.housing_drift) {
+    uncertainty.error_per_housing_k =
+        std::hypot(sensor.housing_drift->error_per_kelvin, sensor.housing_drift->sigma);
+    uncertainty.left_per_housing_k = sensor.housing_drift->sigma;
+  }
   return uncertainty;
 }
 

@@ -116,7 +116,8 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
       review_(options, sensor),
       min_weight_(min_weight),
       apron_(std::max(1, options.expert().occlusion().edge_margin_px())),
-      rectifier_(thermal_camera, CorrectedInfluence(options, sensor)) {
+      corrections_(CorrectionsOf(options, sensor)),
+      rectifier_(thermal_camera, corrections_) {
   const int width = rectifier_.ideal_camera().width;
   const int height = rectifier_.ideal_camera().height;
   // An apron of the largest distance around the image: pixels at its border have neighbours, and no
@@ -328,7 +329,8 @@ FusionReport ThermalFuser::Fuse(const PosedThermalFrame& posed, const CaptureCon
   const RigidTransform& T_map_thermal = posed.T_map_thermal;
   CHECK(frame.valid);
   CHECK(IsRigid(T_map_thermal) && IsRigid(posed.T_map_depth));
-  rectifier_.Rectify(frame.temperature_raw, frame.scale, apron_, pool, celsius_);
+  rectifier_.Rectify(frame.temperature_raw, corrections_.WithoutDrift(frame.scale, capture.nuc),
+                     apron_, pool, celsius_);
   CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;
   PixelRowArgs row_args = RowArgs(posed, capture);

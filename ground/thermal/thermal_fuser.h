@@ -104,6 +104,7 @@ class ThermalFuser {
   const TemperatureReview review_;
   const float min_weight_;
   const int apron_;  ///< Pixels around distances_m_ and celsius_.
+  const ReadingCorrections corrections_;
   ThermalRectifier rectifier_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
   SurfaceMaps coarse_;                ///< Every second pixel each way.

@@ -175,8 +175,12 @@ ThermalOptions CompleteLimits(const ThermalOptions& o, const ThermalSensorModel&
   return complete;
 }
 
-SceneInfluence CorrectedInfluence(const ThermalOptions& options, const ThermalSensorModel& sensor) {
-  return options.expert().correct_scene_influence() ? sensor.scene_influence : SceneInfluence{};
+ReadingCorrections CorrectionsOf(const ThermalOptions& options, const ThermalSensorModel& sensor) {
+  ReadingCorrections corrections{.radiometric_correction = sensor.radiometric_correction,
+                                 .housing_drift = sensor.housing_drift};
+  if (options.expert().correct_scene_influence())
+    corrections.scene_influence = sensor.scene_influence;
+  return corrections;
 }
 
 }  // namespace isotherm

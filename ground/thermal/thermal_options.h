@@ -3,6 +3,7 @@
 #include "common/base/status.h"
 #include "common/rig/sensor_models.h"
 #include "ground/options/ground_options.pb.h"
+#include "ground/thermal/reading_corrections.h"
 
 namespace isotherm {
 
@@ -20,8 +21,8 @@ ThermalOptions WithAnglesOfMaterial(const ThermalOptions& options);
 /// it is known).
 ThermalOptions CompleteLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
-/// Returns the scene influence that is taken out of thermal images: what the sensor is known to
-/// add, if the options ask for it.
-SceneInfluence CorrectedInfluence(const ThermalOptions& options, const ThermalSensorModel& sensor);
+/// Returns how readings are corrected, by what is known of the sensor and as the options ask for
+/// it.
+ReadingCorrections CorrectionsOf(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
 }  // namespace isotherm

@@ -62,7 +62,7 @@ Difference CompareWithOpencv(const CameraModel& camera) {
   ThreadPool pool(1);
   Image<float> celsius;
   constexpr int kApron = 1;
-  ThermalRectifier rectifier(camera, SceneInfluence{});
+  ThermalRectifier rectifier(camera, {});
   rectifier.Rectify(centikelvin, kCentikelvin, kApron, pool, celsius);
   const CameraModel& ideal = rectifier.ideal_camera();
   const testing::OpencvRectification truth(camera, ideal);
@@ -105,7 +105,7 @@ TEST(ThermalRectificationTest, APincushionLensIsStraightenedAsByOpencv) {
 /// Each corner and the middle of each side shows something hot.
 TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
   const CameraModel camera = DistortedCamera(-0.439, 0.29, -0.114);
-  ThermalRectifier rectifier(camera, SceneInfluence{});
+  ThermalRectifier rectifier(camera, {});
   ThreadPool pool(1);
   for (const int left : {0, 180, camera.width - 6}) {
     for (const int top : {0, 140, camera.height - 6}) {
@@ -121,16 +121,41 @@ TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
   }
 }
 
+TEST(ThermalRectifierTest, ReadingsAreCorrectedOnceTheSceneIsTakenOut) {
+  CameraModel straight = DistortedCamera(0.0, 0.0, 0.0);
+  straight.p1 = straight.p2 = 0.0;
+  const SceneInfluence influence{.near_fraction = 0.05, .total_fraction = 0.05};
+  const RadiometricCorrection correction{{20, 100}, {1.0F, -3.0F}, {0.1F, 0.1F}};
+  Image<std::uint16_t> frame(straight.width, straight.height, 29'500);
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) frame.At(x, y) = 36'000;
+  ThreadPool pool(1);
+  Image<float> own, corrected, celsius;
+  ThermalRectifier(straight, {.scene_influence = influence})
+      .Rectify(frame, kCentikelvin, 0, pool, own);
+  ThermalRectifier(straight, {influence, correction})
+      .Rectify(frame, kCentikelvin, 0, pool, corrected);
+  ThermalRectifier(straight, {.radiometric_correction = correction})
+      .Rectify(frame, kCentikelvin, 0, pool, celsius);
+  EXPECT_NEAR(celsius.At(200, 200), 21.85 + 1.0 - 4.0 * 1.85 / 80.0, 1e-3);
+  for (const auto& [x, y] : {std::pair(20, 30), std::pair(200, 200), std::pair(57, 3)}) {
+    const auto reading = static_cast<double>(own.At(x, y));
+    EXPECT_NEAR(corrected.At(x, y), reading + correction.At(reading), 1e-3);
+    EXPECT_GT(std::abs(own.At(x, y) - kCentikelvin.Celsius(frame.At(x, y))), 0.2);
+  }
+}
+
 TEST(ThermalRectifierTest, NoiseIsLessWhereFourPixelsAreAveraged) {
   CameraModel straight = DistortedCamera(0.0, 0.0, 0.0);
   straight.p1 = straight.p2 = 0.0;
-  const ThermalRectifier none(straight, SceneInfluence{});
+  const ThermalRectifier none(straight, {});
   EXPECT_EQ(none.noise_gain().At(10, 20), 1.0F) << "a pixel is itself";
-  const ThermalRectifier corrected(straight, {.near_fraction = 0.1, .total_fraction = 0.1});
+  const ThermalRectifier corrected(
+      straight, {.scene_influence = {.near_fraction = 0.1, .total_fraction = 0.1}});
   EXPECT_NEAR(corrected.noise_gain().At(10, 20), 1.0 / (0.8 * 0.8), 1e-5)
       << "what takes the scene's influence out raises the noise";
   const CameraModel camera = DistortedCamera(-0.4, 0.2, 0.0);
-  ThermalRectifier rectifier(camera, SceneInfluence{});
+  ThermalRectifier rectifier(camera, {});
   // The variance of what becomes of noise, against what is said of it.
   constexpr double kSigma_k = 1.0;
   constexpr int kFrames = 400;

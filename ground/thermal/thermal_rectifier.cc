@@ -31,13 +31,15 @@ void KeepRadiometric(std::span<float> celsius) {
 
 }  // namespace
 
-ThermalRectifier::ThermalRectifier(const CameraModel& camera, const SceneInfluence& influence)
+ThermalRectifier::ThermalRectifier(const CameraModel& camera, const ReadingCorrections& corrections)
     : camera_(camera),
       ideal_(RectifiedCamera(camera)),
       source_(ideal_.width, ideal_.height, -1),
       fraction_x_(ideal_.width, ideal_.height),
       fraction_y_(ideal_.width, ideal_.height),
-      noise_gain_(ideal_.width, ideal_.height) {
+      noise_gain_(ideal_.width, ideal_.height),
+      radiometric_correction_(corrections.radiometric_correction) {
+  const SceneInfluence& influence = corrections.scene_influence;
   if (influence.Total() > 0.0) corrector_.emplace(influence, camera.width, camera.height);
   const auto gain = static_cast<float>(1.0 / (1.0 - influence.Total()));
   for (int v = 0; v < ideal_.height; ++v) {
@@ -67,6 +69,10 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& temperature_raw,
   image_.Resize(camera_.width, camera_.height);
   if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
     celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
+  const auto finish_row = [this](std::span<float> row) {
+    radiometric_correction_.Correct(row);
+    KeepRadiometric(row);
+  };
   // RadiometricScale::Celsius in single precision, which is right to 0.2 mK at 1500 °C.
   const auto kelvin_per_count = static_cast<float>(scale.kelvin_per_count);
   const auto zero_k = static_cast<float>(kCelsiusZero_k - scale.offset_kelvin);
@@ -77,12 +83,12 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& temperature_raw,
       const float value = static_cast<float>(raw[x]) * kelvin_per_count - zero_k;
       row[x] = raw[x] == 0 ? kNan : value;
     }
-    if (!corrector_) KeepRadiometric(row);
+    if (!corrector_) finish_row(row);
   });
   if (corrector_) {
     corrector_->Correct(image_);
     pool.ParallelForRows(camera_.height, kRectifiedRowsPerTask,
-                         [&](int y) { KeepRadiometric(image_.Row(y)); });
+                         [&](int y) { finish_row(image_.Row(y)); });
   }
   pool.ParallelForRows(height, kRectifiedRowsPerTask, [&](int v) {
     ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),

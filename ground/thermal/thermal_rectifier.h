@@ -7,18 +7,19 @@
 #include "common/frame/image.h"
 #include "common/frame/radiometric_scale.h"
 #include "common/geometry/camera.h"
-#include "common/rig/sensor_models.h"
+#include "ground/thermal/reading_corrections.h"
 #include "ground/thermal/scene_influence_corrector.h"
 
 namespace isotherm {
 
 /// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, which sees all
 /// that the frame shows (RectifiedCamera); NaN outside the frame or where it has no value.
-/// Before that it takes out what the scene adds to each pixel. Bilinear. Keeps scratch memory.
+/// Before that it corrects the readings: takes out what the scene adds to each pixel, and adds the
+/// radiometric correction. Bilinear. Keeps scratch memory.
 /// Thread-compatible.
 class ThermalRectifier {
  public:
-  ThermalRectifier(const CameraModel& camera, const SceneInfluence& influence);
+  ThermalRectifier(const CameraModel& camera, const ReadingCorrections& corrections);
   /// `temperature_raw`, counts of `scale`, has the camera's size (CHECK). Writes into `celsius`
   /// with `apron` pixels of NaN all around. NaN is also what lies
   /// outside kMinRadiometric_celsius..kMaxRadiometric_celsius, which the model cannot hold.
@@ -39,6 +40,7 @@ class ThermalRectifier {
   Image<float> noise_gain_;
   Image<float> image_;  ///< The frame in °C.
   std::optional<SceneInfluenceCorrector> corrector_;
+  const RadiometricCorrection radiometric_correction_;
 };
 
 }  // namespace isotherm

@@ -177,7 +177,7 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   ThreadPool pool(1);
   Image<float> celsius;
   constexpr int kApron = 2;
-  ThermalRectifier(camera, SceneInfluence{}).Rectify(image, kCentikelvin, kApron, pool, celsius);
+  ThermalRectifier(camera, {}).Rectify(image, kCentikelvin, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(1, 71)));
   const CameraModel ideal_camera = RectifiedCamera(camera);
   for (const Eigen::Vector2i& ideal :
@@ -190,7 +190,7 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   const auto middle_x = static_cast<int>(ideal_camera.cx),
              middle_y = static_cast<int>(ideal_camera.cy);
   image.At(static_cast<int>(camera.cx), static_cast<int>(camera.cy)) = 0;
-  ThermalRectifier(camera, SceneInfluence{}).Rectify(image, kCentikelvin, kApron, pool, celsius);
+  ThermalRectifier(camera, {}).Rectify(image, kCentikelvin, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(middle_x + kApron, middle_y + kApron)))
       << "a pixel without value stays without value";
 }

@@ -48,10 +48,11 @@ double DriftKelvin(const CameraUncertainty& camera, const NucAge& nuc) {
   const double minutes = nuc.seconds_since.value_or(nuc.seconds_followed) / kSPerMin;
   const double pattern_k = camera.pattern_drift_k_per_sqrt_min * std::sqrt(minutes);
   // A rate that lies anywhere between its limits: half their distance over the root of 3.
-  const double housing_k = nuc.housing_change_k
-                               ? std::abs(*nuc.housing_change_k)
-                               : kWarmHousingRate_k_per_min * minutes / std::numbers::sqrt3;
-  return std::hypot(pattern_k, camera.error_per_housing_k * housing_k);
+  const double housing_k =
+      nuc.housing_change_k
+          ? camera.left_per_housing_k * std::abs(*nuc.housing_change_k)
+          : camera.error_per_housing_k * kWarmHousingRate_k_per_min * minutes / std::numbers::sqrt3;
+  return std::hypot(pattern_k, housing_k);
 }
 
 double ExtrinsicSigmaPx(std::optional<double> reprojection_error_px) {

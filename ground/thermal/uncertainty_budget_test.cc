@@ -132,6 +132,13 @@ TEST(DriftKelvinTest, AHousingThatIsToldReplacesTheRate) {
   EXPECT_NEAR(DriftKelvin(sensor, {.seconds_since = 600.0, .housing_change_k = -0.25}), 1.0,
               kExact);
   EXPECT_EQ(DriftKelvin(sensor, {.seconds_since = 600.0, .housing_change_k = 0.0}), 0.0);
+  const CameraUncertainty calibrated{.left_per_housing_k = 0.2};
+  EXPECT_NEAR(DriftKelvin(calibrated, {.seconds_since = 600.0, .housing_change_k = -0.25}), 0.05,
+              kExact)
+      << "it is taken out";
+  EXPECT_EQ(DriftKelvin(calibrated, {.seconds_since = 60.0}),
+            DriftKelvin(sensor, {.seconds_since = 60.0}))
+      << "it cannot be: the camera does not tell";
 }
 
 TEST(ExtrinsicSigmaTest, IsTheRigsReprojectionErrorAlongOneAxis) {

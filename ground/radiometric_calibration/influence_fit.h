@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "common/base/status.h"
+#include "common/rig/sensor_models.h"
+#include "ground/radiometric_calibration/aperture_image.h"
+
+namespace isotherm {
+
+/// Holds an aperture image and how it belongs to others.
+struct ApertureView {
+  ApertureImage image;
+  int setting = 0;  ///< Views of one setting show the black body at one temperature.
+};
+
+/// What aperture images tell of a camera's scene influence.
+struct InfluenceReport {
+  SceneInfluence influence;
+  /// Standard uncertainties, by leaving out one view after the other.
+  double near_fraction_sigma = 0.0, near_sigma_px_sigma = 0.0, total_fraction_sigma = 0.0;
+  /// Root mean square of how far the black body reads from the others' mean of its setting, as
+  /// measured and corrected, each view by what the others tell. Kelvin.
+  double apart_before_k = 0.0, apart_after_k = 0.0;
+  int views = 0;  ///< That have others of their setting.
+
+  /// Views that were left out read less than half as far apart once they are corrected.
+  bool IsKnown() const;
+};
+
+/// Finds the scene influence with which the black body of one setting reads the same through each
+/// hole and all over the hole, and the plate the same all over the image (thesis 5.1, figures 5.6
+/// to 5.9). What black body and plate read then is free: an error of all readings does not matter.
+/// Refuses views that cannot tell: fewer than three holes, or too much alike.
+Result<InfluenceReport> FitInfluence(const std::vector<ApertureView>& views);
+
+}  // namespace isotherm
