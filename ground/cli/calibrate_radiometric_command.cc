@@ -22,7 +22,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRadiometricFooter =
     R"(Finds by what the thermal camera's readings have to be raised to be right, from black bodies of known
 temperature, and what the radiation on other pixels adds to each one (the scene's influence: up to 7 K).
 
@@ -63,7 +63,7 @@ struct Findings {
   std::optional<DriftReport> drift;
 };
 
-struct Arguments {
+struct RadiometricArguments {
   std::string table, warm_up, rig, output, json;
   RadiometricConditions conditions;
   bool apply = false;
@@ -218,7 +218,8 @@ void SetReadings(const RadiometricReport& report, CalibrationRecord& record,
     for (int j = 0; j < 3; ++j) record.add_covariance(i == j ? sigmas[i] * sigmas[i] : 0.0);
 }
 
-void SetFindings(const Arguments& arguments, const Findings& found, RigCalibration& rig) {
+void SetFindings(const RadiometricArguments& arguments, const Findings& found,
+                 RigCalibration& rig) {
   ThermalSensorProperties& sensor = *rig.mutable_thermal_sensor();
   if (found.drift && found.drift->IsKnown()) {
     HousingDriftProperties& drift = *sensor.mutable_housing_drift();
@@ -236,7 +237,7 @@ void SetFindings(const Arguments& arguments, const Findings& found, RigCalibrati
   SetReadings(*found.readings, record, sensor);
 }
 
-Status CheckArguments(const Arguments& arguments) {
+Status CheckArguments(const RadiometricArguments& arguments) {
   const RadiometricConditions& conditions = arguments.conditions;
   if (arguments.table.empty() && arguments.warm_up.empty()) {
     return InvalidArgument(
@@ -259,7 +260,8 @@ Status CheckArguments(const Arguments& arguments) {
 }
 
 /// Writes the calibration, if that was asked for.
-Status Write(const Arguments& arguments, const Findings& found, const std::optional<Rig>& rig) {
+Status WriteFindings(const RadiometricArguments& arguments, const Findings& found,
+                     const std::optional<Rig>& rig) {
   if (!found.readings && !found.drift->IsKnown()) {
     fmt::print("nothing to write{}\n",
                arguments.output.empty() ? "" : fmt::format(", {} is not made", arguments.output));
@@ -279,7 +281,7 @@ Status Write(const Arguments& arguments, const Findings& found, const std::optio
 }
 
 /// Finds what was asked for. `rig` as for CalibrateReadings.
-Result<Findings> Find(const Arguments& arguments, std::optional<Rig>& rig) {
+Result<Findings> Find(const RadiometricArguments& arguments, std::optional<Rig>& rig) {
   ProgressBar bar("calibrating", 0, "");
   const auto progress = [&](double fraction) { bar.Update(fraction); };
   Findings found;
@@ -297,7 +299,7 @@ Result<Findings> Find(const Arguments& arguments, std::optional<Rig>& rig) {
   return found;
 }
 
-int Run(const Arguments& arguments) {
+int RunRadiometric(const RadiometricArguments& arguments) {
   if (Status status = CheckArguments(arguments); !status.ok()) return Fail(status);
   std::optional<Rig> rig;
   if (!arguments.rig.empty()) {
@@ -314,7 +316,7 @@ int Run(const Arguments& arguments) {
       return Fail(status);
     fmt::print("{}: written\n", arguments.json);
   }
-  const Status status = Write(arguments, *found, rig);
+  const Status status = WriteFindings(arguments, *found, rig);
   return status.ok() ? 0 : Fail(status);
 }
 
@@ -323,7 +325,7 @@ int Run(const Arguments& arguments) {
 void AddCalibrateRadiometricCommand(CLI::App& calibrate, CommandBody& body) {
   CLI::App* command = calibrate.add_subcommand(
       "radiometric", "By what the thermal camera's readings are wrong, before black bodies");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RadiometricArguments>();
   command->add_option("table", arguments->table, "Table of black bodies and what they read (.csv)");
   command->add_option("--warm-up", arguments->warm_up,
                       "Recording of a camera that rests while it warms up (.mcap)");
@@ -348,8 +350,9 @@ void AddCalibrateRadiometricCommand(CLI::App& calibrate, CommandBody& body) {
                    "Standard uncertainty that all temperatures of the black body have together, by "
                    "its certificate, K")
       ->capture_default_str();
-  command->footer(kFooter);
-  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+  command->footer(kRadiometricFooter);
+  command->callback(
+      [arguments, &body] { body = [arguments] { return RunRadiometric(*arguments); }; });
 }
 
 }  // namespace isotherm

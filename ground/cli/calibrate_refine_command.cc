@@ -51,8 +51,9 @@ Examples:
 constexpr const char* kCheckFooter =
     R"(Says, before a job, whether pose, delay and scene influence of the thermal camera are still what the calibration
 says, from half a minute of scanning something with warm and cold parts: one line each. A fourth tells how
-temperatures differ from one NUC to another, which calibrating does not help against. Exit status 0: all fit;
-1: something has moved; 2: this scan cannot tell (standard error says why).
+temperatures differ from one NUC to another, which calibrating does not help against, a fifth whether the depth
+camera sees the surface the same all over its image. Exit status 0: all fit; 1: something has moved; 2: this scan
+cannot tell (standard error says why).
 
 Examples:
   isotherm calibrate check scan.mcap
@@ -66,7 +67,7 @@ struct RefineArguments {
   double rotation_deg = 1.0, translation_mm = 10.0, delay_ms = 20.0, principal_point_px = 5.0;
   double influence_percent = 5.0;
   ConfigurationArguments configuration;
-  bool apply = false;
+  bool apply = false, with_depth = false;
   int threads = 0;
 };
 
@@ -93,6 +94,7 @@ class RefineRun {
                    1e-3 * arguments_.translation_mm, 1e-3 * arguments_.delay_ms,
                    arguments_.principal_point_px, 0.01 * arguments_.influence_percent};
     input.with_rendering = !arguments_.render.empty();
+    input.with_depth = arguments_.with_depth;
     Result<RecordingRefinement> refined = [&] {
       ProgressBar bar("calibrating", 0, "");
       auto result =
@@ -198,10 +200,11 @@ int RunCheck(const RefineArguments& arguments) {
     return run.status().code() == StatusCode::kFailedPrecondition ? kCannotTell : *failed;
   fmt::print("{}", CheckText(run.refined(), run.verdict()));
   if (Status status = WriteExtras(arguments, run); !status.ok()) return Fail(status);
-  if (run.verdict().Moved()) {
+  const bool is_uneven = run.refined().depth->verdict == CheckVerdict::kMoved;
+  if (is_uneven) fmt::print("see `isotherm calibrate depth-bias --help`\n");
+  if (run.verdict().Moved())
     fmt::print("see `isotherm calibrate refine {}`\n", arguments.recording);
-    return kMoved;
-  }
+  if (is_uneven || run.verdict().Moved()) return kMoved;
   return run.verdict().Agrees() ? 0 : kCannotTell;
 }
 
@@ -267,6 +270,7 @@ void AddCalibrateCheckCommand(CLI::App& calibrate, CommandBody& body) {
       "check",
       "Whether pose, delay and scene influence of the thermal camera are still as calibrated");
   auto arguments = std::make_shared<RefineArguments>();
+  arguments->with_depth = true;
   AddCommonArguments(*command, *arguments);
   command->add_option("--rig", arguments->rig, "Calibration to check; without, the recording's");
   command->footer(kCheckFooter);

@@ -88,7 +88,8 @@ std::string CheckText(const RecordingRefinement& refined, const CalibrationVerdi
   return fmt::format("{:<10}{}\n{:<10}{}\n{:<10}{}\n{:<10}{}\n", "pose",
                      DescribePose(r, verdict.pose), "delay", DescribeDelay(r, verdict.delay),
                      "influence", DescribeInfluence(r, verdict.influence), "offset",
-                     DescribeOffset(r, verdict.offset));
+                     DescribeOffset(r, verdict.offset)) +
+         (refined.depth ? fmt::format("{:<10}{}\n", "depth", DescribeDepth(*refined.depth)) : "");
 }
 
 Json RefinementJson(const RecordingRefinement& refined, const CalibrationVerdict& verdict) {
@@ -114,6 +115,12 @@ Json RefinementJson(const RecordingRefinement& refined, const CalibrationVerdict
   if (r.epoch_offset) {
     json["offset_k"] = r.epoch_offset->kelvin;
     json["offset_sigma_k"] = r.epoch_offset->sigma_k;
+  }
+  if (refined.depth) {
+    json["depth"] = ToString(refined.depth->verdict);
+    json["depth_uneven"] = refined.depth->uneven;
+    json["depth_uneven_sigma"] = refined.depth->sigma;
+    json["depth_frames"] = refined.depth->frames;
   }
   json["thermal_frames"] = r.frames;
   json["points"] = r.points;

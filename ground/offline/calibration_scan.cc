@@ -139,13 +139,14 @@ Result<TrackedRecording> TrackedRecording::Read(const std::filesystem::path& rec
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, depth_only, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-  Reader frames(**reader, **pipeline, *rig,
-                given ? std::optional(given->depth_scale) : std::nullopt);
+  const auto depth_scale = given ? std::optional(given->depth_scale) : std::nullopt;
+  Reader frames(**reader, **pipeline, *rig, depth_scale);
   frames.Run(progress);
   if (Status fit = CheckTracked((*pipeline)->model().counts); !fit.ok())
     return Err(fit.WithContext(recording.string()));
   TrackedRecording tracked;
   tracked.rig_ = *rig;
+  tracked.depth_scale_ = depth_scale;
   tracked.applied_delay_s_ = AppliedDelay((*reader)->info());
   tracked.pipeline_ = std::move(*pipeline);
   tracked.frames_ = frames.TakeFrames();

@@ -31,6 +31,8 @@ class TrackedRecording {
   TrackedRecording(TrackedRecording&&) noexcept;
 
   const Rig& rig() const { return rig_; }  ///< The one it was read with.
+  /// Raw units per metre that replace those of the frames; nullopt: the frames' own hold.
+  std::optional<double> depth_scale() const { return depth_scale_; }
   /// See AppliedDelay.
   std::optional<double> applied_delay_s() const { return applied_delay_s_; }
   ScanModel model() const;
@@ -41,6 +43,7 @@ class TrackedRecording {
   TrackedRecording() = default;
 
   Rig rig_;
+  std::optional<double> depth_scale_;
   std::optional<double> applied_delay_s_;
   std::unique_ptr<GroundPipeline> pipeline_;
   std::vector<StampedThermal> frames_;

@@ -13,6 +13,7 @@
 #include "ground/calibration/scan_views.h"
 #include "ground/calibration/texture_rendering.h"
 #include "ground/offline/calibration_scan.h"
+#include "ground/offline/depth_check.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/scan/scan_model.h"
 
@@ -20,7 +21,7 @@ namespace isotherm {
 namespace {
 
 // What tracking and refining take of the progress.
-constexpr double kTracked = 0.3, kRefined = 0.95;
+constexpr double kTracked = 0.3, kDepthChecked = 0.4, kRefined = 0.95;
 
 Status CheckSerial(std::string_view name, const std::string& in_file, const std::string& recorded) {
   if (in_file.empty() || recorded.empty() || in_file == recorded) return OkStatus();
@@ -81,10 +82,16 @@ Result<RecordingRefinement> RefineByRecording(const RefinementInput& input,
                                 input.rig ? result.rig.thermal_delay_s - result.delay_in_stamps_s
                                           : result.rig.thermal_delay_s,
                                 result.rig.thermal_sensor.scene_influence};
+  if (input.with_depth) {
+    const auto depth =
+        CheckDepth(input.recording, *tracked, options, PartOf(progress, kTracked, kDepthChecked));
+    if (!depth) return Err(depth.error());
+    result.depth = *depth;
+  }
   const ScanModel model = tracked->model();
   ScanViews views;
   Result<Refinement> refined = RefineByScan(model, tracked->frames(), before, input.prior, views,
-                                            PartOf(progress, kTracked, kRefined));
+                                            PartOf(progress, kDepthChecked, kRefined));
   if (!refined) return Err(refined.error().WithContext(input.recording.string()));
   result.refinement = std::move(*refined);
   if (input.with_rendering) {

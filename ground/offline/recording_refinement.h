@@ -7,6 +7,7 @@
 #include "common/base/status.h"
 #include "common/frame/image.h"
 #include "common/rig/rig.h"
+#include "ground/calibration/depth_consistency.h"
 #include "ground/calibration/rig_refinement.h"
 
 namespace isotherm {
@@ -19,6 +20,7 @@ struct RefinementInput {
   std::optional<Rig> rig;  ///< The calibration to refine; nullopt: the recording's.
   RefinementPrior prior;
   bool with_rendering = false;
+  bool with_depth = false;  ///< Distances are checked, too.
 };
 
 /// Holds what a recording says about its rig.
@@ -27,6 +29,7 @@ struct RecordingRefinement {
   Refinement refinement;
   /// The delay that the recording's stamps contain: those of the placements are added to it.
   double delay_in_stamps_s = 0.0;
+  std::optional<DepthAssessment> depth;
   /// With a rendering: the mean of all images before and after (MeanTexture).
   Image<float> before_celsius, after_celsius;
 

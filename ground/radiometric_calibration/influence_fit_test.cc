@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kWidth = 191, kHeight = 144;
+constexpr int kColumns = 191, kRows = 144;
 
 /// How a camera is simulated here: the model pixel by pixel, with the whole Gaussian, its weights
 /// divided by their sum over the image.
@@ -31,28 +31,28 @@ Image<float> NearMeans(const Image<float>& own, double sigma) {
     }
     return static_cast<float>(sum / weights);
   };
-  Image<float> rows(kWidth, kHeight), means(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  Image<float> rows(kColumns, kRows), means(kColumns, kRows);
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x)
       rows.At(x, y) = along(
-          kWidth, [&](int i) { return static_cast<double>(own.At(i, y)); }, x);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+          kColumns, [&](int i) { return static_cast<double>(own.At(i, y)); }, x);
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x)
       means.At(x, y) = along(
-          kHeight, [&](int i) { return static_cast<double>(rows.At(x, i)); }, y);
+          kRows, [&](int i) { return static_cast<double>(rows.At(x, i)); }, y);
   return means;
 }
 
 ApertureView Look(const Camera& camera, double radius, double disc_celsius, double plate_celsius,
                   int setting = 0) {
-  Image<float> own(kWidth, kHeight);
+  Image<float> own(kColumns, kRows);
   double total = 0.0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      const double inside = 1.0 / (1.0 + std::exp(std::hypot(x - 98.0, y - 70.0) - radius));
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x) {
+      const double inside = 1.0 / (1.0 + std::exp(2.0 * (std::hypot(x - 98.0, y - 70.0) - radius)));
       const double celsius = plate_celsius + inside * (disc_celsius - plate_celsius);
       own.At(x, y) = static_cast<float>(camera.offset_k + camera.gain * celsius);
-      total += static_cast<double>(own.At(x, y)) / (kWidth * kHeight);
+      total += static_cast<double>(own.At(x, y)) / (kColumns * kRows);
     }
   const Image<float> near = NearMeans(own, camera.influence.near_sigma_px);
   std::mt19937 engine(static_cast<unsigned>(radius));

@@ -141,7 +141,7 @@ TEST(ThermalRectifierTest, ReadingsAreCorrectedOnceTheSceneIsTakenOut) {
   for (const auto& [x, y] : {std::pair(20, 30), std::pair(200, 200), std::pair(57, 3)}) {
     const auto reading = static_cast<double>(own.At(x, y));
     EXPECT_NEAR(corrected.At(x, y), reading + correction.At(reading), 1e-3);
-    EXPECT_GT(std::abs(own.At(x, y) - kCentikelvin.Celsius(frame.At(x, y))), 0.2);
+    EXPECT_GT(std::abs(own.At(x, y) - kCentikelvin.Celsius(frame.At(x, y))), 0.1);
   }
 }
 
