@@ -142,8 +142,7 @@ DepthAssessment DepthConsistency::Assess() const {
   result.sigma = result.uneven > 0.0
                      ? std::min(variance_sigma / (2.0 * result.uneven), std::sqrt(variance_sigma))
                      : std::sqrt(variance_sigma);
-  const bool is_told = variance > 3.0 * variance_sigma;
-  if (result.uneven > kMaxUneven && is_told) {
+  if (result.uneven > std::max(kMaxUneven, 3.0 * result.sigma)) {
     result.verdict = CheckVerdict::kMoved;
   } else if (std::sqrt(std::max(0.0, variance) + variance_sigma) <= 2.0 * kMaxUneven) {
     result.verdict = CheckVerdict::kAgrees;
@@ -153,15 +152,16 @@ DepthAssessment DepthConsistency::Assess() const {
 
 std::string DescribeDepth(const DepthAssessment& assessment) {
   const auto amount = [&](double fraction) {
-    return fmt::format("{:.2f} % ({:.1f} mm at {:.2f} m)", 100.0 * fraction,
+    return fmt::format("{:.3f} % ({:.2f} mm at {:.2f} m)", 100.0 * fraction,
                        1e3 * fraction * assessment.distance_m, assessment.distance_m);
   };
   switch (assessment.verdict) {
     case CheckVerdict::kMoved:
-      return fmt::format("uneven over the image by {} +- {:.2f} %", amount(assessment.uneven),
-                         100.0 * assessment.sigma);
+      return fmt::format("uneven over the image by {}, uncertain by {:.3f} %",
+                         amount(assessment.uneven), 100.0 * assessment.sigma);
     case CheckVerdict::kAgrees:
-      return fmt::format("ok, even over the image within {}", amount(assessment.uneven));
+      return fmt::format("ok, the same surface looks the same all over the image within {}",
+                         amount(assessment.uneven));
     default:
       return "this scan cannot tell: surface has to fill the image for half of the time";
   }

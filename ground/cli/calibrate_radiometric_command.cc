@@ -90,7 +90,7 @@ std::string InfluenceText(const RadiometricReport& report) {
   if (!report.influence) return "";
   const InfluenceReport& found = *report.influence;
   return fmt::format(
-      "the scene's influence: {} of what is around a pixel within {:.0f} +- {:.0f} px (one sigma), "
+      "the scene's influence: {} of what is around a pixel within {:.1f} +- {:.1f} px (one sigma), "
       "{} of the whole image\n"
       "holes that were left out read {:.2f} K apart as measured, {:.2f} K corrected\n",
       percent(found.influence.near_fraction, found.near_fraction_sigma),
