@@ -121,7 +121,8 @@ std::string DriftText(const DriftReport& report) {
       "housing: {} frames in {} parts between NUCs, in which it changes by up to {:.2f} K\n"
       "readings are too high by {:+.2f} +- {:.2f} K for each kelvin that it is warmer than at the "
       "NUC\n"
-      "readings stray by {:.3f} K as measured, by {:.3f} K corrected (each half by the other)\n",
+      "readings stray by {:.3f} K as measured, by {:.3f} K corrected by what the other parts "
+      "tell\n",
       report.frames, report.epochs, report.most_change_k, report.drift.error_per_kelvin,
       report.drift.sigma, report.before_k, report.held_out_k);
   if (!report.IsKnown()) text += "what is corrected is no more than chance: it is not written\n";

@@ -63,7 +63,6 @@ void Center(std::vector<Block>& blocks) {
 /// Sums over blocks that are centered.
 struct Sums {
   double changes2 = 0.0, products = 0.0, readings2 = 0.0;
-  std::size_t blocks = 0;
 
   double Slope() const { return changes2 > 0.0 ? products / changes2 : 0.0; }
   /// Sum of the squares of what a slope leaves.
@@ -79,20 +78,21 @@ Sums SumsOf(const std::vector<Block>& blocks) {
     sums.products += block.change_k * block.reading;
     sums.readings2 += block.reading * block.reading;
   }
-  sums.blocks = blocks.size();
   return sums;
 }
 
-/// Square root of what is left of each half by the slope of the other one.
-double HeldOut(const std::vector<Block>& blocks) {
+/// Root mean square of what is left of each epoch by the slope of the others.
+double HeldOut(const std::vector<Block>& centered) {
+  std::map<int, std::vector<Block>> epochs;
+  for (const Block& block : centered) epochs[block.epoch].push_back(block);
+  const Sums all = SumsOf(centered);
   double left = 0.0;
-  // Neighbours in turn: both halves see the whole warm-up.
-  std::vector<Block> halves[2];
-  for (std::size_t i = 0; i < blocks.size(); ++i) halves[i % 2].push_back(blocks[i]);
-  for (std::vector<Block>& half : halves) Center(half);
-  const Sums first = SumsOf(halves[0]), second = SumsOf(halves[1]);
-  left += std::max(0.0, first.Left(second.Slope())) + std::max(0.0, second.Left(first.Slope()));
-  return std::sqrt(left / static_cast<double>(blocks.size()));
+  for (const auto& [epoch, blocks] : epochs) {
+    const Sums own = SumsOf(blocks);
+    const Sums others{all.changes2 - own.changes2, all.products - own.products};
+    left += std::max(0.0, own.Left(others.Slope()));
+  }
+  return std::sqrt(left / static_cast<double>(centered.size()));
 }
 
 double MostChange(const std::vector<DriftSample>& samples) {
@@ -124,13 +124,13 @@ Result<DriftReport> FitHousingDrift(const std::vector<DriftSample>& samples) {
   std::set<int> epochs;
   for (const Block& block : blocks) epochs.insert(block.epoch);
   report.epochs = static_cast<int>(epochs.size());
-  if (static_cast<int>(blocks.size()) < report.epochs + kMinBlocks) {
-    return Err(FailedPrecondition(
-        fmt::format("{} thermal frames in {} parts between NUCs are too few: record for minutes",
-                    samples.size(), report.epochs)));
+  if (report.epochs < 2 || static_cast<int>(blocks.size()) < report.epochs + kMinBlocks) {
+    return Err(FailedPrecondition(fmt::format(
+        "{} thermal frames in {} parts between NUCs are too few: record for minutes, with NUCs",
+        samples.size(), report.epochs)));
   }
-  report.held_out_k = HeldOut(blocks);
   Center(blocks);
+  report.held_out_k = HeldOut(blocks);
   const Sums sums = SumsOf(blocks);
   const double slope = sums.Slope();
   const auto freedom = static_cast<double>(blocks.size() - epochs.size() - 1);

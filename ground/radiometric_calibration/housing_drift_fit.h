@@ -25,7 +25,7 @@ struct DriftReport {
   int epochs = 0;
   double most_change_k = 0.0;  ///< Largest change of the housing within an epoch.
   /// Root mean square of how readings stray about the means of their epochs, as measured and
-  /// corrected by what the other half of the scan tells. Kelvin.
+  /// corrected by what the other epochs tell. Kelvin.
   double before_k = 0.0, held_out_k = 0.0;
 
   /// Held out, less than half is left.
