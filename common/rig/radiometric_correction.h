@@ -24,7 +24,7 @@ struct RadiometricCorrection {
 
   bool empty() const { return readings_celsius.empty(); }
 
-  /// What is to be added to a reading, kelvin; 0 without readings.
+  /// Returns what to add to a reading, kelvin; 0 without readings.
   double At(double reading_celsius) const;
   /// Standard uncertainty of the corrected reading, kelvin; 0 without readings.
   double SigmaAt(double reading_celsius) const;

@@ -47,7 +47,7 @@ struct SceneInfluence {
 /// Tells how readings drift after a NUC as the housing, whose radiation falls on the detector,
 /// warms up (thesis 3.2.3, fig. 3.4b).
 struct HousingDrift {
-  double error_per_kelvin = 0.0;  ///< Of all readings, for each kelvin since the NUC.
+  double error_per_kelvin = 0.0;  ///< Rise of all readings per kelvin since the NUC.
   double sigma = 0.0;             ///< Its standard uncertainty.
 
   /// A PI 450 has about 4.
@@ -62,7 +62,7 @@ struct ThermalSensorModel {
   std::optional<double> pixel_pitch_m;
   std::optional<LensModel> lens;
   SceneInfluence scene_influence;
-  /// Of readings without the scene's influence and the housing's drift.
+  /// Corrects readings without the scene's influence and the housing's drift.
   RadiometricCorrection radiometric_correction{};
   std::optional<HousingDrift> housing_drift{};
 };

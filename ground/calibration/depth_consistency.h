@@ -12,7 +12,7 @@
 
 namespace isotherm {
 
-/// What a scan says of the distances that its depth camera measures.
+/// Tells what a scan says of the distances that its depth camera measures.
 struct DepthAssessment {
   CheckVerdict verdict = CheckVerdict::kNotAssessed;
   /// How far distances are from those of the surface that all images made together, by place in the
@@ -34,7 +34,7 @@ inline constexpr double kMaxUneven = 0.0001;
 class DepthConsistency {
  public:
   static constexpr int kColumns = 8, kRows = 6;
-  static constexpr int kBlocks = 10;  ///< Of the scan, by time.
+  static constexpr int kBlocks = 10;  ///< Parts of the scan, by time.
 
   /// `depth_m` as measured (0 = no return), `surface` what an ideal camera of the same size sees of
   /// the model from `T_map_depth`, in map coordinates. `block` is the part of the scan, 0 to

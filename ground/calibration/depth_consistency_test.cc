@@ -24,7 +24,7 @@ CameraModel SmallCamera() {
   return camera;
 }
 
-/// What a camera at the origin of the map sees of a wall at `z_m`, turned about y.
+/// Returns what a camera at the origin sees of a wall at `z_m`, turned about y.
 SurfaceMaps Wall(const CameraModel& camera, double z_m, double turned_rad) {
   SurfaceMaps maps;
   maps.Resize(camera.width, camera.height);

@@ -57,7 +57,7 @@ Examples:
   isotherm calibrate radiometric black-body.csv --rig rig.textproto --emissivity 0.95 --apply
   isotherm calibrate radiometric --warm-up warm-up.mcap --rig rig.textproto --apply)";
 
-/// What was asked for and found.
+/// Holds what was asked for and found.
 struct Findings {
   std::optional<RadiometricReport> readings;
   std::optional<DriftReport> drift;

@@ -66,7 +66,7 @@ Image<float> ToCelsius(const RawFrame& frame) {
 /// An image of a hole, and what a camera without influence shows of the disc behind it.
 struct HoleImage {
   double radius_px = 0.0;
-  int column = 0, row = 0;  ///< Of the disc's middle.
+  int column = 0, row = 0;  ///< The disc's middle.
   double own_celsius = 0.0;
   Image<float> celsius;
   SceneInfluence influence;  ///< The camera's.
@@ -112,7 +112,7 @@ double ErrorWithout(const SceneInfluence& influence, const HoleImage& hole) {
   return MiddleCelsius(hole, corrected) - hole.own_celsius;
 }
 
-/// What `isotherm calibrate radiometric` finds in the images.
+/// Finds what `isotherm calibrate radiometric` finds in the images.
 Result<SceneInfluence> Calibrate(const std::vector<HoleImage>& holes) {
   std::vector<ApertureView> views;
   for (const HoleImage& hole : holes) {

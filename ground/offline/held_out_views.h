@@ -22,7 +22,7 @@ struct HeldOutOptions {
   /// The scanned surface. nullopt: a temperature is predicted to be seen from everywhere as from
   /// where it was measured.
   std::optional<SmoothSurface> surface;
-  ReadingCorrections corrections;  ///< Of the frames, as they were made for the model.
+  ReadingCorrections corrections;  ///< Made of the frames, as they were for the model.
 };
 
 /// Predicts thermal frames by casting the model of a finished scan from where they were taken.

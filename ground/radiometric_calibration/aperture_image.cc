@@ -18,9 +18,9 @@ namespace {
 /// Side of a patch. The scene's influence changes over tens of pixels.
 constexpr int kPatchPixels = 8;
 constexpr int kMinPatchPixels = 16;
-/// Of the black body inside the rim.
+/// The black body has to show as many inside the rim.
 constexpr int kMinBodyPixels = 60;
-/// What else is as hot as the black body may have so many pixels of those it has.
+/// Others as hot as the black body may have this fraction of its pixels.
 constexpr double kMaxOther = 0.02;
 /// So many pixels may be dead. Of a hole that is too hot for the range there are more.
 constexpr double kMaxDead = 0.001;
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> PixelsWithoutValue(const Image<float>& celsius) {
   return pixels;
 }
 
-/// Of the pixels with a value; 0 if none has one.
+/// Looks at the pixels with a value; 0 if none has one.
 float MedianOf(const Image<float>& celsius) {
   std::vector<float> values;
   std::ranges::copy_if(celsius.pixels(), std::back_inserter(values),

@@ -15,7 +15,7 @@ using PixelPatch = std::vector<std::uint32_t>;
 /// fills the image, and which pixels show what.
 struct ApertureImage {
   Image<float> celsius;             ///< As measured; NaN = no value.
-  double hole_radius_px = 0.0;      ///< Of a circle as large as the hole.
+  double hole_radius_px = 0.0;      ///< Radius of a circle as large as the hole.
   std::vector<PixelPatch> body{};   ///< Pixels that show the black body, away from the hole's rim.
   std::vector<PixelPatch> plate{};  ///< Empty if the black body fills the image.
 

@@ -9,15 +9,15 @@ namespace isotherm {
 
 /// One comparison of a camera with a black body.
 struct SetPoint {
-  double apparent_celsius = 0.0;  ///< What a right camera reads.
+  double apparent_celsius = 0.0;  ///< A right camera reads this.
   double reading_celsius = 0.0;
   double sigma_k = 0.0;  ///< Standard uncertainty of `apparent_celsius` that is its own.
 };
 
-/// What set points tell of a camera's readings.
+/// Tells what set points say of a camera's readings.
 struct CurveReport {
   RadiometricCorrection correction;
-  int degree = 0;         ///< Of the polynomial over the reading.
+  int degree = 0;         ///< Degree of the polynomial over the reading.
   double before_k = 0.0;  ///< Root mean square of what is wrong as measured.
   /// The same once it is corrected by what the others tell; NaN with one set point.
   double held_out_k = 0.0;

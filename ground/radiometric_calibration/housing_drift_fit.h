@@ -18,7 +18,7 @@ struct DriftSample {
   double reading_celsius = 0.0;   ///< Mean of the image.
 };
 
-/// What such images tell.
+/// Tells what such images say.
 struct DriftReport {
   HousingDrift drift;
   std::size_t frames = 0;

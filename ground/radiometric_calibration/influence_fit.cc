@@ -41,7 +41,7 @@ Parameters WithinBounds(Parameters parameters) {
   return parameters;
 }
 
-/// What the patches of one view read.
+/// Holds what the patches of one view read.
 struct Readings {
   Eigen::VectorXd body, plate;
 };
@@ -56,7 +56,7 @@ Readings ReadingsOf(const ApertureImage& image, const Image<float>& celsius) {
   return {means(image.body), means(image.plate)};
 }
 
-/// What they read without the influence.
+/// Returns what they read without the influence.
 std::vector<Readings> Corrected(const std::vector<ApertureView>& views,
                                 const Parameters& parameters) {
   std::vector<Readings> readings;

@@ -14,7 +14,7 @@ struct ApertureView {
   int setting = 0;  ///< Views of one setting show the black body at one temperature.
 };
 
-/// What aperture images tell of a camera's scene influence.
+/// Tells what aperture images say of a camera's scene influence.
 struct InfluenceReport {
   SceneInfluence influence;
   /// Standard uncertainties, by leaving out one view after the other.
@@ -22,7 +22,7 @@ struct InfluenceReport {
   /// Root mean square of how far the black body reads from the others' mean of its setting, as
   /// measured and corrected, each view by what the others tell. Kelvin.
   double apart_before_k = 0.0, apart_after_k = 0.0;
-  int views = 0;  ///< That have others of their setting.
+  int views = 0;  ///< Those with others of their setting.
 
   /// Views that were left out read less than half as far apart once they are corrected.
   bool IsKnown() const;

@@ -18,7 +18,7 @@ constexpr int kColumns = 191, kRows = 144;
 /// divided by their sum over the image.
 struct Camera {
   SceneInfluence influence;
-  double offset_k = 0.0, gain = 1.0;  ///< Of its readings.
+  double offset_k = 0.0, gain = 1.0;  ///< Make its readings wrong.
 };
 
 Image<float> NearMeans(const Image<float>& own, double sigma) {

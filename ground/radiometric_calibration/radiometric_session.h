@@ -16,18 +16,18 @@ namespace isotherm {
 
 /// Says what black bodies are like, and what is known before.
 struct RadiometricConditions {
-  double emissivity = 1.0;          ///< Of the black body.
-  double reflected_celsius = 23.0;  ///< What it reflects.
+  double emissivity = 1.0;          ///< The black body's.
+  double reflected_celsius = 23.0;  ///< The black body reflects this.
   double common_sigma_k = 0.5;      ///< By which all its temperatures may be off together.
 };
 
-/// What a row of the table became.
+/// Says what a row of the table became.
 struct RowReport {
   SetPointRow row;
-  int frames = 0;                 ///< Of images.
+  int frames = 0;                 ///< Number of its images.
   double hole_radius_px = 0.0;    ///< 0: no images, or they show nothing but the black body.
-  double apparent_celsius = 0.0;  ///< What a right camera reads.
-  double measured_celsius = 0.0;  ///< As the camera reads.
+  double apparent_celsius = 0.0;  ///< A right camera reads this.
+  double measured_celsius = 0.0;  ///< The camera reads this.
   double own_celsius = 0.0;       ///< Without the scene's influence.
   double left_k = 0.0;            ///< Wrong after the correction.
 };
@@ -37,7 +37,7 @@ struct RadiometricReport {
   /// nullopt: images did not tell it; `why_no_influence` says why, if there were images.
   std::optional<InfluenceReport> influence;
   std::string why_no_influence;
-  SceneInfluence taken_out;  ///< Of images, before the curve was found.
+  SceneInfluence taken_out;  ///< It was taken out of images before the curve was found.
   CurveReport curve;
 
   /// All that is wrong is within twice its uncertainty.

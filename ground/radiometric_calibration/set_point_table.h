@@ -13,8 +13,8 @@ namespace isotherm {
 struct SetPointRow {
   int line = 0;                             ///< In the file, from 1.
   double body_celsius = 0.0;                ///< The black body's temperature.
-  std::optional<double> reading_celsius{};  ///< As the camera showed it, or ...
-  std::filesystem::path images{};           ///< ... images of it.
+  std::optional<double> reading_celsius{};  ///< The camera showed this.
+  std::filesystem::path images{};           ///< Else it is in these images.
   std::optional<double> sigma_k{};  ///< Standard uncertainty of the black body at this set point.
 };
 

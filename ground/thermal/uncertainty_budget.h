@@ -20,7 +20,7 @@ struct CameraUncertainty {
   /// Error of a reading per kelvin that the housing has warmed up since the NUC (thesis fig. 3.4b:
   /// 20 K for 5 K).
   double error_per_housing_k = 4.0;
-  /// What is left of it once it was taken out of frames whose change of the housing is known.
+  /// So much of it is left in frames that it was taken out of: the change of the housing is known.
   double left_per_housing_k = 4.0;
   /// Fraction by which the rest of the image pulls a pixel's temperature towards its own mean
   /// (thesis 5.1); after it was taken out, what is left. 0 = not known.
