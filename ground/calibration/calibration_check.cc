@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "ground/calibration/scan_refinement.h"
 #include "ground/scan/scan_model.h"
+#include "ground/thermal/reading_corrections.h"
 
 namespace isotherm {
 namespace {
@@ -111,14 +112,17 @@ CalibrationCheck::CalibrationCheck(const CalibrationCheckOptions& options, const
 
 void CalibrationCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
   if (!options_.expert().enabled() || !rig_.thermal) return;
-  const std::uint8_t epoch = nuc_epochs_.Follow(*frame).epoch;
+  const NucAge nuc = nuc_epochs_.Follow(*frame);
   if (!frame->valid || ToSeconds(frame->header.capture_sigma) > kMaxStampSigma_s) return;
   if (frame->temperature_raw.width() != rig_.thermal->width ||
       frame->temperature_raw.height() != rig_.thermal->height)
     return;
-  selection_.Add(
-      {frame->header.capture_time, {frame, &frame->temperature_raw}, frame->scale, {}, epoch},
-      SpeedNow(scan, *rig_.thermal));
+  selection_.Add({frame->header.capture_time,
+                  {frame, &frame->temperature_raw},
+                  WithoutDrift(frame->scale, rig_.thermal_sensor.housing_drift, nuc),
+                  {},
+                  nuc.epoch},
+                 SpeedNow(scan, *rig_.thermal));
 }
 
 CalibrationCheckReport CalibrationCheck::Finish(const ScanModel& scan,

@@ -19,6 +19,7 @@
 #include "ground/offline/recorded_frames.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/thermal/nuc_epochs.h"
+#include "ground/thermal/reading_corrections.h"
 
 namespace isotherm {
 namespace {
@@ -78,24 +79,25 @@ class Reader {
   }
 
   void Take(const RecordedThermal& recorded) {
-    const std::uint8_t epoch = EpochOf(recorded.frame);
+    const NucAge nuc = AgeOf(recorded.frame);
     if (!recorded.frame.valid || seen_++ % stride_ != 0) return;
     Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded.frame.image);
     if (!image || image->width() != rig_.thermal->width || image->height() != rig_.thermal->height)
       return;
     frames_.push_back({recorded.frame.header.capture_time,
                        std::make_shared<const Image<std::uint16_t>>(std::move(*image)),
-                       recorded.frame.scale,
+                       WithoutDrift(recorded.frame.scale, rig_.thermal_sensor.housing_drift, nuc),
                        {},
-                       epoch});
+                       nuc.epoch});
   }
 
-  std::uint8_t EpochOf(const EncodedThermalFrame& encoded) {
+  NucAge AgeOf(const EncodedThermalFrame& encoded) {
     ThermalFrame frame;
     frame.header = encoded.header;
     frame.seconds_since_nuc = encoded.seconds_since_nuc;
     frame.valid = encoded.valid;
-    return nuc_epochs_.Follow(frame).epoch;
+    frame.housekeeping = encoded.housekeeping;
+    return nuc_epochs_.Follow(frame);
   }
 
   RecordingReader& reader_;

@@ -42,7 +42,8 @@ void HeldOutViews::Compare(const ThermalFrame& frame, const NucAge& nuc) {
   }
   ++report_.frames;
   const RigidTransform T_world_thermal = *T_world_depth * scan_.rig.T_thermal_depth->inverse();
-  rectifier_.Rectify(frame.temperature_raw, options_.corrections.WithoutDrift(frame.scale, nuc),
+  rectifier_.Rectify(frame.temperature_raw,
+                     WithoutDrift(frame.scale, options_.corrections.housing_drift, nuc),
                      /*apron=*/0, scan_.pool, celsius_);
   raycaster_.Cast(scan_.tsdf(), rectifier_.ideal_camera(), InFirstMap(T_world_thermal),
                   options_.min_weight, scan_.pool, maps_);

@@ -9,19 +9,20 @@
 
 namespace isotherm {
 
+/// Returns a frame's scale, changed so that its temperatures are without the housing's drift; the
+/// same if nobody knows the drift, or the housing's temperature.
+inline RadiometricScale WithoutDrift(RadiometricScale scale,
+                                     const std::optional<HousingDrift>& drift, const NucAge& nuc) {
+  if (drift && nuc.housing_change_k)
+    scale.offset_kelvin -= drift->error_per_kelvin * *nuc.housing_change_k;
+  return scale;
+}
+
 /// Says what is corrected in each thermal image. Nothing by default.
 struct ReadingCorrections {
   SceneInfluence scene_influence{};                ///< Is taken out.
   RadiometricCorrection radiometric_correction{};  ///< Is added.
-  std::optional<HousingDrift> housing_drift{};     ///< Is taken out of frames before both.
-
-  /// A frame's scale, changed so that its temperatures are without the housing's drift; the same if
-  /// nobody knows the drift, or the housing's temperature.
-  RadiometricScale WithoutDrift(RadiometricScale scale, const NucAge& nuc) const {
-    if (housing_drift && nuc.housing_change_k)
-      scale.offset_kelvin -= housing_drift->error_per_kelvin * *nuc.housing_change_k;
-    return scale;
-  }
+  std::optional<HousingDrift> housing_drift{};     ///< Is taken out before both (WithoutDrift).
 };
 
 }  // namespace isotherm

@@ -329,8 +329,9 @@ FusionReport ThermalFuser::Fuse(const PosedThermalFrame& posed, const CaptureCon
   const RigidTransform& T_map_thermal = posed.T_map_thermal;
   CHECK(frame.valid);
   CHECK(IsRigid(T_map_thermal) && IsRigid(posed.T_map_depth));
-  rectifier_.Rectify(frame.temperature_raw, corrections_.WithoutDrift(frame.scale, capture.nuc),
-                     apron_, pool, celsius_);
+  rectifier_.Rectify(frame.temperature_raw,
+                     WithoutDrift(frame.scale, corrections_.housing_drift, capture.nuc), apron_,
+                     pool, celsius_);
   CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;
   PixelRowArgs row_args = RowArgs(posed, capture);

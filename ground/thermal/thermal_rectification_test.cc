@@ -145,6 +145,15 @@ TEST(ThermalRectifierTest, ReadingsAreCorrectedOnceTheSceneIsTakenOut) {
   }
 }
 
+TEST(ReadingCorrectionsTest, TheHousingsDriftIsTakenOutWhereItIsKnown) {
+  const HousingDrift drift{4.0, 0.1};
+  const NucAge warmer{.housing_change_k = 0.5}, silent{};
+  EXPECT_NEAR(WithoutDrift(kCentikelvin, drift, warmer).Celsius(30'000),
+              kCentikelvin.Celsius(30'000) - 2.0F, 1e-4);
+  EXPECT_EQ(WithoutDrift(kCentikelvin, std::nullopt, warmer), kCentikelvin);
+  EXPECT_EQ(WithoutDrift(kCentikelvin, drift, silent), kCentikelvin);
+}
+
 TEST(ThermalRectifierTest, NoiseIsLessWhereFourPixelsAreAveraged) {
   CameraModel straight = DistortedCamera(0.0, 0.0, 0.0);
   straight.p1 = straight.p2 = 0.0;
