@@ -79,11 +79,6 @@ Result<std::vector<std::pair<std::filesystem::path, double>>> FilesOf(
   return files;
 }
 
-NamedImage FromPose(StillPose pose, std::string name) {
-  return {std::move(name), pose.begin_s,         pose.end_s,
-          pose.frames,     std::move(pose.mean), std::move(pose.samples)};
-}
-
 /// Names of frames by the time since the first.
 std::string NameOf(double since_start_s) { return fmt::format("{:.2f} s", since_start_s); }
 
@@ -121,6 +116,13 @@ std::string_view ToString(CalibratedStream stream) {
   return "";
 }
 
+Image<float> CalibrationImage(const Image<std::uint16_t>& counts) { return ToFloat(counts); }
+
+NamedImage NamedImageOf(StillPose pose, std::string name) {
+  return {std::move(name), pose.begin_s,         pose.end_s,
+          pose.frames,     std::move(pose.mean), std::move(pose.samples)};
+}
+
 Result<Image<float>> ReadCalibrationImage(const std::filesystem::path& path) {
   constexpr std::uint64_t kMaxFileBytes = 256U << 20;
   const Result<std::string> file = ReadFile(path, kMaxFileBytes);
@@ -143,7 +145,7 @@ Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder, Calibra
   StillPoseFinder finder({.min_frames = kAnyNumber});
   std::string name;
   const auto add = [&](std::optional<StillPose> pose) {
-    if (pose) series.images.push_back(FromPose(std::move(*pose), name));
+    if (pose) series.images.push_back(NamedImageOf(std::move(*pose), name));
   };
   for (std::size_t i = 0; i < files->size(); ++i) {
     const auto& [path, time_s] = (*files)[i];
@@ -172,7 +174,7 @@ Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, Calib
   const auto add = [&](std::optional<StillPose> pose) {
     if (!pose) return;
     std::string name = NameOf(pose->begin_s - *start_s);
-    series.images.push_back(FromPose(std::move(*pose), std::move(name)));
+    series.images.push_back(NamedImageOf(std::move(*pose), std::move(name)));
   };
   while (true) {
     const Result<std::optional<RecordedItem>> item = (*reader)->Next();

@@ -43,6 +43,11 @@ Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder, Calibra
 Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, CalibratedStream stream,
                                    const std::function<void(double)>& progress);
 
+/// A frame's image: 0 and 65535 have no value.
+Image<float> CalibrationImage(const Image<std::uint16_t>& counts);
+/// A still pose as an image.
+NamedImage NamedImageOf(StillPose pose, std::string name);
+
 /// One camera's images as views.
 std::vector<CalibrationView> ViewsOf(ImageSeries series);
 /// Two cameras' images as views: those at the same place in both series if neither has times, else

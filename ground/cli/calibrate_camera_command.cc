@@ -22,6 +22,7 @@ constexpr const char* kCalibrateCameraExamples = R"(
 
 Examples:
   isotherm calibrate thermal scan.mcap -o rig.textproto --report calibration
+  isotherm calibrate thermal --live --edge-id edge -o rig.textproto
   isotherm calibrate thermal --images thermal/ --target "asymmetric-circles 4x9 0.05 thickness=0.001"
   isotherm calibrate depth --infrared --images infrared/ --target "chessboard 8x6 0.03" -o rig.textproto)";
 
@@ -34,11 +35,11 @@ int RunCalibrateCamera(const CameraArguments& arguments, bool thermal) {
   const CalibratedStream stream = thermal              ? CalibratedStream::kThermal
                                   : arguments.infrared ? CalibratedStream::kInfrared
                                                        : CalibratedStream::kDepth;
-  Result<ImageSeries> series = ReadSeries(arguments.target, stream);
+  Result<std::vector<ImageSeries>> series = ReadSeries(arguments.target, {stream});
   if (!series) return Fail(series.error());
-  const std::string serial = series->serial;
+  const std::string serial = series->front().serial;
   const Status status = CalibrateAndReport(arguments.target, {thermal ? "thermal" : "depth"},
-                                           ViewsOf(std::move(*series)), {serial});
+                                           ViewsOf(std::move(series->front())), {serial});
   return status.ok() ? 0 : Fail(status);
 }
 

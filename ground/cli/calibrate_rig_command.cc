@@ -21,6 +21,7 @@ constexpr const char* kCalibrateRigExamples = R"(
 
 Examples:
   isotherm calibrate rig scan.mcap -o rig.textproto --report calibration
+  isotherm calibrate rig --live --target thesis-board -o rig.textproto
   isotherm calibrate rig --images calibration/ --infrared -o rig.textproto)";
 
 struct RigArguments {
@@ -29,16 +30,16 @@ struct RigArguments {
 };
 
 int RunCalibrateRig(const RigArguments& arguments) {
-  Result<ImageSeries> depth =
+  Result<std::vector<ImageSeries>> series =
       ReadSeries(arguments.target,
-                 arguments.infrared ? CalibratedStream::kInfrared : CalibratedStream::kDepth);
-  if (!depth) return Fail(depth.error());
-  Result<ImageSeries> thermal = ReadSeries(arguments.target, CalibratedStream::kThermal);
-  if (!thermal) return Fail(thermal.error());
-  const std::vector<std::string> serials = {depth->serial, thermal->serial};
+                 {arguments.infrared ? CalibratedStream::kInfrared : CalibratedStream::kDepth,
+                  CalibratedStream::kThermal});
+  if (!series) return Fail(series.error());
+  ImageSeries &depth = series->front(), &thermal = series->back();
+  const std::vector<std::string> serials = {depth.serial, thermal.serial};
   const Status status =
       CalibrateAndReport(arguments.target, {"depth", "thermal"},
-                         PairViews(std::move(*depth), std::move(*thermal)), serials);
+                         PairViews(std::move(depth), std::move(thermal)), serials);
   return status.ok() ? 0 : Fail(status);
 }
 

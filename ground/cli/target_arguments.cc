@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "ground/camera_calibration/rig_file.h"
 #include "ground/camera_calibration/target.h"
 #include "ground/cli/command.h"
+#include "ground/cli/live_series.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/cli/today.h"
 #include "ground/json/json.h"
@@ -44,10 +46,18 @@ void AddTargetArguments(CLI::App& command, TargetArguments& arguments) {
   CLI::Option* recording =
       command.add_option("recording", arguments.recording,
                          "Recording (.mcap) in which the target rests for a second in each pose");
+  CLI::Option* images =
+      command
+          .add_option("--images", arguments.images,
+                      "Folder of grey PNG files instead, one or more for each pose")
+          ->excludes(recording);
   command
-      .add_option("--images", arguments.images,
-                  "Folder of grey PNG files instead, one or more for each pose")
-      ->excludes(recording);
+      .add_flag("--live", arguments.live,
+                "From a running rig instead, until Ctrl-C: after each pose it says which are still "
+                "missing. No ground station may follow the rig meanwhile")
+      ->excludes(recording)
+      ->excludes(images);
+  AddRigAddress(command, arguments.address);
   command.add_option("--target", arguments.target, "What the target is, see below")
       ->capture_default_str();
   command.add_option("-o,--output", arguments.rig,
@@ -63,19 +73,34 @@ void AddTargetArguments(CLI::App& command, TargetArguments& arguments) {
   command.add_option("--threads", arguments.threads, "Threads; 0 = one per core");
 }
 
-Result<ImageSeries> ReadSeries(const TargetArguments& arguments, CalibratedStream stream) {
+Result<std::vector<ImageSeries>> ReadSeries(const TargetArguments& arguments,
+                                            const std::vector<CalibratedStream>& streams) {
+  if (arguments.live) {
+    if (std::ranges::count(streams, CalibratedStream::kInfrared) > 0) {
+      return Err(InvalidArgument(
+          "--live: a rig sends no infrared images; calibrate on depth, or from --images"));
+    }
+    const Result<CalibrationTarget> target = ParseTarget(arguments.target);
+    if (!target) return Err(target.error());
+    return TakeLiveSeries(arguments.address, *target, streams);
+  }
   if (arguments.images.empty() && arguments.recording.empty()) {
     return Err(
-        InvalidArgument("nothing to calibrate from: name a recording, or a folder with "
-                        "--images"));
+        InvalidArgument("nothing to calibrate from: name a recording, a folder with --images, or "
+                        "say --live"));
   }
-  ProgressBar bar(fmt::format("reading {} images", ToString(stream)), 0, "");
-  const auto progress = [&](double fraction) { bar.Update(fraction); };
-  Result<ImageSeries> series = arguments.images.empty()
-                                   ? ReadStillPoses(arguments.recording, stream, progress)
-                                   : ReadImageFolder(arguments.images, stream, progress);
-  if (series) bar.Finish();
-  return series;
+  std::vector<ImageSeries> all;
+  for (const CalibratedStream stream : streams) {
+    ProgressBar bar(fmt::format("reading {} images", ToString(stream)), 0, "");
+    const auto progress = [&](double fraction) { bar.Update(fraction); };
+    Result<ImageSeries> series = arguments.images.empty()
+                                     ? ReadStillPoses(arguments.recording, stream, progress)
+                                     : ReadImageFolder(arguments.images, stream, progress);
+    if (!series) return Err(series.error());
+    bar.Finish();
+    all.push_back(std::move(*series));
+  }
+  return all;
 }
 
 Status CalibrateAndReport(const TargetArguments& arguments,
@@ -102,7 +127,9 @@ Status CalibrateAndReport(const TargetArguments& arguments,
       MakeReport(*calibration, camera_names, {.bootstrap_samples = arguments.bootstrap});
   report.date = Today();
   report.software = SoftwareName();
-  report.source = arguments.images.empty() ? arguments.recording : arguments.images;
+  report.source = arguments.live             ? "a running rig"
+                  : arguments.images.empty() ? arguments.recording
+                                             : arguments.images;
   fmt::print("{}", ReportText(report));
   if (!arguments.report.empty()) ISOTHERM_RETURN_IF_ERROR(WriteReport(report, arguments.report));
   if (arguments.rig.empty()) return OkStatus();

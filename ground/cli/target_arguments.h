@@ -6,6 +6,7 @@
 #include "common/base/status.h"
 #include "ground/camera_calibration/calibration_images.h"
 #include "ground/camera_calibration/calibration_report.h"
+#include "ground/cli/rig_order.h"
 
 namespace CLI {
 class App;
@@ -22,12 +23,15 @@ struct TargetArguments {
   std::string report;  ///< Folder for report.txt, report.json and report.html.
   int bootstrap = 2000;
   int threads = 0;
+  bool live = false;  ///< From a running rig, which `address` names.
+  RigAddress address;
 };
 
 void AddTargetArguments(CLI::App& command, TargetArguments& arguments);
 
-/// Reads one camera's images: from the folder, or from the recording.
-Result<ImageSeries> ReadSeries(const TargetArguments& arguments, CalibratedStream stream);
+/// Reads cameras' images: from the folder, the recording, or a running rig. By stream.
+Result<std::vector<ImageSeries>> ReadSeries(const TargetArguments& arguments,
+                                            const std::vector<CalibratedStream>& streams);
 
 /// Calibrates, prints the report, and writes what was asked for. `serials` by camera, empty if not
 /// known.

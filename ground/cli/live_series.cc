@@ -1,0 +1,145 @@
+#include "ground/cli/live_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/base/service.h"
+#include "common/transport/participant.h"
+#include "common/transport/transport_environment.h"
+#include "ground/camera_calibration/coach.h"
+#include "ground/cli/command.h"
+#include "ground/subscriber/subscriber.h"
+
+namespace isotherm {
+namespace {
+
+/// Each keeps a few images: 200 poses of both cameras are some 800 MB.
+constexpr std::size_t kMaxPoses = 200;
+
+/// Keeps the poses of some streams. Belongs to the thread that receives.
+class PoseKeeper {
+ public:
+  PoseKeeper(const CalibrationTarget& target, const std::vector<CalibratedStream>& streams)
+      : coach_(target, Names(streams)) {
+    for (const CalibratedStream stream : streams)
+      streams_.push_back({stream, StillPoseFinder({}), {"live", {}, {}}});
+  }
+
+  void Take(CalibratedStream stream, const FrameHeader& header,
+            const Image<std::uint16_t>& counts) {
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      if (streams_[i].stream != stream) continue;
+      const double time_s = ToSeconds(header.capture_time.time_since_epoch());
+      Keep(i, streams_[i].finder.Add(time_s, CalibrationImage(counts)));
+    }
+  }
+
+  void Take(const RigDescription& rig) {
+    for (Stream& stream : streams_)
+      stream.series.serial =
+          stream.stream == CalibratedStream::kThermal ? rig.thermal.serial : rig.depth.serial;
+  }
+
+  bool is_full() const {
+    return std::ranges::any_of(streams_,
+                               [](const Stream& s) { return s.series.images.size() >= kMaxPoses; });
+  }
+
+  Result<std::vector<ImageSeries>> Finish() {
+    std::vector<ImageSeries> all;
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      Keep(i, streams_[i].finder.Finish());
+      if (streams_[i].series.images.empty()) {
+        return Err(FailedPrecondition(fmt::format(
+            "no pose was kept of the {} images: hold the target still for a second in each pose, "
+            "best on a stand",
+            ToString(streams_[i].stream))));
+      }
+      all.push_back(std::move(streams_[i].series));
+    }
+    return all;
+  }
+
+ private:
+  struct Stream {
+    CalibratedStream stream;
+    StillPoseFinder finder;
+    ImageSeries series;
+  };
+
+  static std::vector<std::string> Names(const std::vector<CalibratedStream>& streams) {
+    std::vector<std::string> names;
+    for (const CalibratedStream stream : streams) names.emplace_back(ToString(stream));
+    return names;
+  }
+
+  void Keep(std::size_t index, std::optional<StillPose> pose) {
+    if (!pose) return;
+    Stream& stream = streams_[index];
+    coach_.Add(static_cast<int>(index), pose->mean);
+    const CoachStatus& status = coach_.status()[index];
+    std::string line = status.Line();
+    if (status.refused > refused_) {
+      refused_ = status.refused;
+      line += fmt::format(" (this pose does not count: {})", status.last_refusal);
+    }
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+    std::string name = fmt::format("pose {}", stream.series.images.size() + 1);
+    stream.series.images.push_back(NamedImageOf(std::move(*pose), std::move(name)));
+  }
+
+  CalibrationCoach coach_;
+  std::vector<Stream> streams_;
+  int refused_ = 0;
+};
+
+}  // namespace
+
+Result<std::vector<ImageSeries>> TakeLiveSeries(const RigAddress& address,
+                                                const CalibrationTarget& target,
+                                                const std::vector<CalibratedStream>& streams) {
+  StopSignal signal;  // Before any other thread.
+  SubscriberOptions options;
+  options.ground_id = "calibrate";
+  options.software_version = SoftwareName();
+  // It knows what to check if no rig is there, or several are.
+  Status found = WithRig(address, [&](RigCommander& rig, const EdgeStatus&) {
+    options.edge_id = rig.edge_id();
+    return OkStatus();
+  });
+  if (!found.ok()) return Err(found);
+  PoseKeeper poses(target, streams);
+  SubscriberHandlers handlers;
+  handlers.thermal = [&](const ReceivedThermal& thermal) {
+    if (thermal.frame->valid)
+      poses.Take(CalibratedStream::kThermal, thermal.frame->header, thermal.frame->temperature_raw);
+  };
+  handlers.depth = [&](const ReceivedDepth& depth) {
+    poses.Take(CalibratedStream::kDepth, depth.frame->header, depth.frame->depth_raw);
+  };
+  handlers.rig = [&](const RigDescription& rig) { poses.Take(rig); };
+  handlers.turn = [&] {
+    if (poses.is_full()) signal.Request();
+  };
+  handlers.session_end = [&](const SessionCounters&) { signal.Request(); };
+  const SystemClock clock{};
+  const TransportEnvironment environment(clock);
+  const auto participant = Participant::Create(environment, address.domain);
+  if (!participant) return Err(participant.error());
+  const auto subscriber = Subscriber::Create(**participant, clock, options, handlers);
+  if (!subscriber) return Err(subscriber.error());
+  fmt::print(
+      "{}: show the target, hold it still for a second in each pose; Ctrl-C when nothing is "
+      "missing\n",
+      options.edge_id);
+  (*subscriber)->Run(signal.token());
+  return poses.Finish();
+}
+
+}  // namespace isotherm
