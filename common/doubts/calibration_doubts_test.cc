@@ -60,6 +60,11 @@ TEST(CalibrationDoubtsTest, WithoutRecordsTheFilesOwnDateCounts) {
   // That of distances says nothing of where the cameras are.
   rig.mutable_depth_bias_calibration()->set_date("2026-03-01");
   EXPECT_THAT(DoubtsAboutRecords(rig, kToday, {}), ElementsAre(HasSubstr("the rig is 2281 days")));
+  rig.mutable_radiometric_calibration()->set_date("2020-01-01");
+  EXPECT_THAT(DoubtsAboutRecords(rig, kToday, {}),
+              ElementsAre(HasSubstr("the rig is 2281 days"),
+                          AllOf(HasSubstr("the thermal camera's readings"),
+                                HasSubstr("calibrate radiometric"))));
   EXPECT_THAT(DoubtsAboutRecords(RigCalibration(), kToday, {}), IsEmpty());
 }
 

@@ -121,8 +121,10 @@ thermal_sensor { radiometric_correction { reading_celsius: [20, 100] correction_
   ASSERT_TRUE(again->thermal_sensor.housing_drift);
   EXPECT_EQ(again->thermal_sensor.housing_drift->error_per_kelvin, 4.0);
   EXPECT_EQ(again->thermal_sensor.housing_drift->sigma, 0.3);
-  EXPECT_THAT(RigError(ReplaceFirst(text, "sigma: 0.3", "sigma: -1")),
-              HasSubstr("thermal_sensor.housing_drift"));
+  for (const char* wrong : {"sigma: -1", ""}) {
+    EXPECT_THAT(RigError(ReplaceFirst(text, "sigma: 0.3", wrong)),
+                HasSubstr("housing_drift"));
+  }
   EXPECT_THAT(RigError(ReplaceFirst(text, "0.2]", "0.2, 1.0]")),
               AllOf(HasSubstr("rig.textproto"), HasSubstr("radiometric_correction")));
 }

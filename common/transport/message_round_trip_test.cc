@@ -161,6 +161,15 @@ TEST_F(MessageRoundTripTest, RigArrivesAsItWasWritten) {
   EXPECT_EQ(rig.rig.thermal_sensor.scene_influence.near_fraction, 0.04);
   EXPECT_EQ(rig.rig.thermal_sensor.scene_influence.near_sigma_px, 35.0);
   EXPECT_EQ(rig.rig.thermal_sensor.scene_influence.total_fraction, 0.03);
+  const RadiometricCorrection& correction = rig.rig.thermal_sensor.radiometric_correction;
+  EXPECT_EQ(correction.readings_celsius, (std::vector<float>{10.0F, 90.0F}));
+  EXPECT_EQ(correction.corrections_k, (std::vector<float>{0.3F, -0.7F}));
+  EXPECT_EQ(correction.sigmas_k, (std::vector<float>{0.2F, 0.25F}));
+  ASSERT_TRUE(rig.rig.thermal_sensor.housing_drift);
+  EXPECT_EQ(rig.rig.thermal_sensor.housing_drift->error_per_kelvin, 3.5);
+  EXPECT_EQ(rig.rig.thermal_sensor.housing_drift->sigma, 0.2);
+  EXPECT_EQ(rig.rig.depth_sensor.bias.columns, 2);
+  EXPECT_EQ(rig.rig.depth_sensor.bias.multipliers.size(), 8U);
   EXPECT_EQ(rig.depth.serial, "D1");
   EXPECT_EQ(rig.depth.model, "a, b");
   EXPECT_EQ(rig.depth.rate_hz, 30.0);

@@ -110,10 +110,8 @@ std::optional<RefusalCause> CheckRig(const Rig& rig) {
   // A rig that nobody calibrated may be announced; what needs the calibration refuses.
   if (!rig.depth && !rig.thermal) {
     if (const auto cause = CheckThermalScale(rig.thermal_scale)) return cause;
-    if (!Validate(rig.depth_sensor.bias).ok() ||
-        !Validate(rig.thermal_sensor.radiometric_correction).ok()) {
+    if (!Validate(rig.depth_sensor).ok() || !Validate(rig.thermal_sensor).ok())
       return RefusalCause::kOutOfRange;
-    }
     return CheckFinite({rig.depth_scale, rig.thermal_delay_s});
   }
   if (Validate(rig).ok()) return std::nullopt;

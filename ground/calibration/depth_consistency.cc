@@ -13,8 +13,10 @@ namespace {
 constexpr double kMaxError = 0.03;
 /// More oblique surfaces are as uncertain as their edges.
 constexpr float kMinCosine = 0.6F;
-/// A cell with fewer pixels tells nothing of itself, a frame with fewer cells nothing of its pose.
-constexpr int kMinPixels = 100, kMinCells = 12;
+/// A cell of which less shows surface tells nothing of itself, a frame with fewer cells nothing of
+/// its pose.
+constexpr double kMinShown = 0.15;
+constexpr int kMinCells = 12;
 /// Every so many pixels along either axis.
 constexpr int kStride = 2;
 /// So many cells must have been seen in at least half of the blocks.
@@ -95,8 +97,10 @@ void DepthConsistency::Add(const Image<float>& depth_m, const SurfaceMaps& surfa
       ++pixels;
     }
   }
+  const double cell_pixels =
+      static_cast<double>(depth_m.size()) / (kStride * kStride * static_cast<double>(cells.size()));
   for (CellMean& cell : cells) {
-    if (cell.pixels < kMinPixels) cell.pixels = 0;
+    if (cell.pixels < kMinShown * cell_pixels) cell.pixels = 0;
     if (cell.pixels > 0) cell.error /= cell.pixels;
   }
   if (!TakeOutPose(cells)) return;
@@ -161,9 +165,10 @@ std::string DescribeDepth(const DepthAssessment& assessment) {
                          amount(assessment.uneven), 100.0 * assessment.sigma);
     case CheckVerdict::kAgrees:
       return fmt::format("ok, the same surface looks the same all over the image within {}",
-                         amount(assessment.uneven));
+                         amount(std::hypot(assessment.uneven, assessment.sigma)));
     default:
-      return "this scan cannot tell: surface has to fill the image for half of the time";
+      return "this scan cannot tell: for half of the time surface has to fill half of the image, "
+             "and longer if distances are noisy";
   }
 }
 

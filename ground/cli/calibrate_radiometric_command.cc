@@ -93,9 +93,8 @@ std::string InfluenceText(const RadiometricReport& report) {
       "the scene's influence: {} of what is around a pixel within {:.1f} +- {:.1f} px (one sigma), "
       "{} of the whole image\n"
       "holes that were left out read {:.2f} K apart as measured, {:.2f} K corrected\n",
-      percent(found.influence.near_fraction, found.near_fraction_sigma),
-      found.influence.near_sigma_px, found.near_sigma_px_sigma,
-      percent(found.influence.total_fraction, found.total_fraction_sigma), found.apart_before_k,
+      percent(found.influence.near_fraction, found.Sigma(0)), found.influence.near_sigma_px,
+      found.Sigma(1), percent(found.influence.total_fraction, found.Sigma(2)), found.apart_before_k,
       found.apart_after_k);
 }
 
@@ -109,11 +108,19 @@ std::string CurveText(const RadiometricReport& report) {
                         table.corrections_k[i], table.sigmas_k[i]);
   }
   text += "colder and hotter readings are corrected as the nearest of these\n";
-  text += fmt::format("wrong: {:.2f} K as measured", curve.before_k);
+  text += fmt::format("readings by themselves are wrong by {:.2f} K", curve.before_k);
   if (!std::isnan(curve.held_out_k))
-    text +=
-        fmt::format(", {:.2f} K corrected by what the other temperatures tell", curve.held_out_k);
-  return text + " (root mean square)\n";
+    text += fmt::format(", by {:.2f} K corrected by what the other temperatures tell",
+                        curve.held_out_k);
+  text += " (root mean square)\n";
+  if (curve.degree == 0 && report.temperatures < 3)
+    text += "a line takes three temperatures of the black body\n";
+  if (!curve.IsKnown()) {
+    text += "what is corrected predicts nothing: the correction is not written\n";
+  } else if (report.IsRightAsItIs()) {
+    text += "readings are right within twice the uncertainty, that of the black body included\n";
+  }
+  return text;
 }
 
 std::string DriftText(const DriftReport& report) {
@@ -125,38 +132,34 @@ std::string DriftText(const DriftReport& report) {
       "tell\n",
       report.frames, report.epochs, report.most_change_k, report.drift.error_per_kelvin,
       report.drift.sigma, report.before_k, report.held_out_k);
-  if (!report.IsKnown()) text += "what is corrected is no more than chance: it is not written\n";
+  if (!report.IsKnown()) text += "that is not less than half: it is not written\n";
   return text;
 }
 
 std::string ReportText(const RadiometricConditions& conditions, const RadiometricReport& report) {
   std::string text = fmt::format(
-      "black body: emissivity {:g}, reflects {:g} °C, its temperatures are uncertain by {:g} K "
-      "together (--emissivity, --reflected, --calibrator-sigma)\n",
-      conditions.emissivity, conditions.reflected_celsius, conditions.common_sigma_k);
+      "black body: emissivity {:g} +- {:g}, reflects {:g} +- {:g} °C, its temperatures are "
+      "uncertain by {:g} K together (--emissivity, --emissivity-sigma, --reflected, "
+      "--reflected-sigma, --calibrator-sigma)\n",
+      conditions.emissivity, conditions.emissivity_sigma, conditions.reflected_celsius,
+      conditions.reflected_sigma_k, conditions.common_sigma_k);
   text += fmt::format("{:>12}{:>13}{:>13}{:>13}{:>11}\n", "black body", "should read", "reads",
                       "by itself", "left");
   for (const RowReport& row : report.rows) text += RowText(row);
   text += InfluenceText(report);
   if (report.influence && report.influence->IsKnown())
     text += "\"by itself\" is without what the rest of the scene adds\n";
-  text += CurveText(report);
-  if (report.IsRightAsItIs()) {
-    text +=
-        "readings are right within twice their uncertainty: what is corrected is no more than "
-        "chance\n";
-  }
-  return text;
+  return text + CurveText(report);
 }
 
 Json InfluenceJson(const InfluenceReport& found) {
   Json json;
   json["near_fraction"] = found.influence.near_fraction;
-  json["near_fraction_sigma"] = found.near_fraction_sigma;
+  json["near_fraction_sigma"] = found.Sigma(0);
   json["near_sigma_px"] = found.influence.near_sigma_px;
-  json["near_sigma_px_sigma"] = found.near_sigma_px_sigma;
+  json["near_sigma_px_sigma"] = found.Sigma(1);
   json["total_fraction"] = found.influence.total_fraction;
-  json["total_fraction_sigma"] = found.total_fraction_sigma;
+  json["total_fraction_sigma"] = found.Sigma(2);
   json["apart_before_k"] = found.apart_before_k;
   json["apart_after_k"] = found.apart_after_k;
   json["known"] = found.IsKnown();
@@ -207,16 +210,17 @@ void SetReadings(const RadiometricReport& report, CalibrationRecord& record,
   found.radiometric_correction = report.curve.correction;
   found.scene_influence = report.taken_out;
   const ThermalSensorProperties properties = ToProto(found);
-  *sensor.mutable_radiometric_correction() = properties.radiometric_correction();
+  if (report.curve.IsKnown())
+    *sensor.mutable_radiometric_correction() = properties.radiometric_correction();
   record.set_views(static_cast<int>(report.rows.size()));
-  if (!report.influence || !report.influence->IsKnown()) return;
-  *sensor.mutable_scene_influence() = properties.scene_influence();
+  if (!report.influence) return;
+  // Also if there is none.
+  sensor.clear_scene_influence();
+  if (properties.has_scene_influence())
+    *sensor.mutable_scene_influence() = properties.scene_influence();
+  if (!report.influence->IsKnown()) return;
   record.set_parameters("near_fraction near_sigma_px total_fraction");
-  const double sigmas[] = {report.influence->near_fraction_sigma,
-                           report.influence->near_sigma_px_sigma,
-                           report.influence->total_fraction_sigma};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) record.add_covariance(i == j ? sigmas[i] * sigmas[i] : 0.0);
+  for (const double value : report.influence->covariance.reshaped()) record.add_covariance(value);
 }
 
 void SetFindings(const RadiometricArguments& arguments, const Findings& found,
@@ -227,15 +231,16 @@ void SetFindings(const RadiometricArguments& arguments, const Findings& found,
     drift.set_error_per_kelvin(found.drift->drift.error_per_kelvin);
     drift.set_sigma(found.drift->drift.sigma);
   }
-  // The record tells of the black bodies.
-  if (!found.readings) return;
+  // The record tells of the black bodies, if there ever were any.
+  if (!found.readings && rig.has_radiometric_calibration()) return;
   CalibrationRecord& record = *rig.mutable_radiometric_calibration();
   record.Clear();
   record.set_date(Today());
   record.set_method(fmt::format("{}, calibrate radiometric", SoftwareName()));
-  record.set_target(fmt::format("black bodies {}", arguments.table));
+  record.set_target(found.readings ? fmt::format("black bodies {}", arguments.table)
+                                   : fmt::format("warm-up {}", arguments.warm_up));
   if (rig.has_thermal_serial()) record.set_serial(rig.thermal_serial());
-  SetReadings(*found.readings, record, sensor);
+  if (found.readings) SetReadings(*found.readings, record, sensor);
 }
 
 Status CheckArguments(const RadiometricArguments& arguments) {
@@ -253,6 +258,14 @@ Status CheckArguments(const RadiometricArguments& arguments) {
     return InvalidArgument(
         fmt::format("--reflected must be -100 to 1000 °C, got {}", conditions.reflected_celsius));
   }
+  if (!(conditions.emissivity_sigma >= 0.0 && conditions.emissivity_sigma <= 0.5)) {
+    return InvalidArgument(
+        fmt::format("--emissivity-sigma must be 0 to 0.5, got {}", conditions.emissivity_sigma));
+  }
+  if (!(conditions.reflected_sigma_k >= 0.0 && conditions.reflected_sigma_k <= 50.0)) {
+    return InvalidArgument(
+        fmt::format("--reflected-sigma must be 0 to 50 K, got {}", conditions.reflected_sigma_k));
+  }
   if (!(conditions.common_sigma_k >= 0.0 && conditions.common_sigma_k <= 50.0)) {
     return InvalidArgument(
         fmt::format("--calibrator-sigma must be 0 to 50 K, got {}", conditions.common_sigma_k));
@@ -263,7 +276,9 @@ Status CheckArguments(const RadiometricArguments& arguments) {
 /// Writes the calibration, if that was asked for.
 Status WriteFindings(const RadiometricArguments& arguments, const Findings& found,
                      const std::optional<Rig>& rig) {
-  if (!found.readings && !found.drift->IsKnown()) {
+  const bool has_readings =
+      found.readings && (found.readings->curve.IsKnown() || found.readings->influence);
+  if (!has_readings && !(found.drift && found.drift->IsKnown())) {
     fmt::print("nothing to write{}\n",
                arguments.output.empty() ? "" : fmt::format(", {} is not made", arguments.output));
     return OkStatus();
@@ -284,17 +299,24 @@ Status WriteFindings(const RadiometricArguments& arguments, const Findings& foun
 /// Finds what was asked for. `rig` as for CalibrateReadings.
 Result<Findings> Find(const RadiometricArguments& arguments, std::optional<Rig>& rig) {
   ProgressBar bar("calibrating", 0, "");
-  const auto progress = [&](double fraction) { bar.Update(fraction); };
+  const bool has_both = !arguments.warm_up.empty() && !arguments.table.empty();
+  const double first_part = has_both ? 0.5 : 0.0;
   Findings found;
-  if (!arguments.table.empty()) {
-    auto readings = CalibrateReadings(arguments.table, arguments.conditions, rig, progress);
-    if (!readings) return Err(readings.error());
-    found.readings = std::move(*readings);
-  }
   if (!arguments.warm_up.empty()) {
-    auto drift = FindHousingDrift(arguments.warm_up, rig, progress);
+    auto drift = FindHousingDrift(arguments.warm_up, rig, [&](double fraction) {
+      bar.Update(has_both ? first_part * fraction : fraction);
+    });
     if (!drift) return Err(drift.error());
     found.drift = *drift;
+    // Readings before black bodies drift, too.
+    if (rig && drift->IsKnown()) rig->thermal_sensor.housing_drift = drift->drift;
+  }
+  if (!arguments.table.empty()) {
+    auto readings = CalibrateReadings(
+        arguments.table, arguments.conditions, rig,
+        [&](double fraction) { bar.Update(first_part + (1.0 - first_part) * fraction); });
+    if (!readings) return Err(readings.error());
+    found.readings = std::move(*readings);
   }
   bar.Finish();
   return found;
@@ -345,6 +367,14 @@ void AddCalibrateRadiometricCommand(CLI::App& calibrate, CommandBody& body) {
   command
       ->add_option("--reflected", arguments->conditions.reflected_celsius,
                    "Temperature of what the black body reflects, °C")
+      ->capture_default_str();
+  command
+      ->add_option("--emissivity-sigma", arguments->conditions.emissivity_sigma,
+                   "Standard uncertainty of the emissivity")
+      ->capture_default_str();
+  command
+      ->add_option("--reflected-sigma", arguments->conditions.reflected_sigma_k,
+                   "Standard uncertainty of the reflected temperature, K")
       ->capture_default_str();
   command
       ->add_option("--calibrator-sigma", arguments->conditions.common_sigma_k,

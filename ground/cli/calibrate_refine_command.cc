@@ -131,6 +131,10 @@ void SetInfluence(const SceneInfluence& found, RigCalibration& rig) {
   influence.set_near_fraction(found.near_fraction);
   influence.set_near_sigma_px(found.near_sigma_px);
   influence.set_total_fraction(found.total_fraction);
+  // They were those of the influence before.
+  if (!rig.has_radiometric_calibration()) return;
+  rig.mutable_radiometric_calibration()->clear_parameters();
+  rig.mutable_radiometric_calibration()->clear_covariance();
 }
 
 /// Changes what was refined, and says how.

@@ -163,6 +163,10 @@ void AppendSensors(const Rig& rig, std::string& text) {
                         correction.corrections_k.front(), correction.readings_celsius.front(),
                         correction.corrections_k.back(), correction.readings_celsius.back());
   }
+  if (thermal.housing_drift) {
+    text += fmt::format(", {:+.2f} K for each kelvin of the housing taken out",
+                        -thermal.housing_drift->error_per_kelvin);
+  }
   if (thermal.pixel_pitch_m)
     text += fmt::format(", pixels of {:g} um", 1e6 * *thermal.pixel_pitch_m);
   if (thermal.lens) {

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> PixelsWithoutValue(const Image<float>& celsius) {
   return pixels;
 }
 
-/// Looks at the pixels with a value; 0 if none has one.
+/// Returns the median of the pixels with a value; 0 if none has one.
 float MedianOf(const Image<float>& celsius) {
   std::vector<float> values;
   std::ranges::copy_if(celsius.pixels(), std::back_inserter(values),
@@ -112,18 +112,34 @@ double MeanOf(const std::vector<PixelPatch>& patches, const Image<float>& image)
 
 Result<ApertureImage> FindAperture(Image<float> celsius, double body_celsius) {
   const std::vector<std::uint32_t> dead = PixelsWithoutValue(celsius);
-  if (static_cast<double>(dead.size()) > kMaxDead * static_cast<double>(celsius.size())) {
+  if (celsius.empty() ||
+      static_cast<double>(dead.size()) > kMaxDead * static_cast<double>(celsius.size())) {
     return Err(FailedPrecondition(fmt::format(
         "{} pixels have no value: is the black body within the camera's range?", dead.size())));
   }
   cv::Mat shown = View(celsius).clone();
   cv::patchNaNs(shown, static_cast<double>(MedianOf(celsius)));
+  cv::Mat around;
+  cv::medianBlur(shown, around, kLevelPixels);
+  // A single dead pixel of the hole is none of the plate's.
+  for (const std::uint32_t pixel : dead) {
+    const int y = static_cast<int>(pixel) / shown.cols, x = static_cast<int>(pixel) % shown.cols;
+    shown.at<float>(y, x) = around.at<float>(y, x);
+  }
   cv::Mat level;
   cv::blur(shown, level, {kLevelPixels, kLevelPixels});
   double low = 0.0, high = 0.0;
   cv::minMaxLoc(level, &low, &high);
   ApertureImage image;
-  if (high - low < kMinContrast_k) {
+  const double contrast_k = high - low;
+  const double uneven_k = std::max(kMaxUneven_k, kMaxUnevenFraction * std::abs(body_celsius));
+  if (contrast_k > uneven_k && contrast_k < std::max(kMinContrast_k, 2.0 * uneven_k)) {
+    return Err(FailedPrecondition(fmt::format(
+        "temperatures differ by {:.1f} K, too much for a black body alone and too little for one "
+        "behind a plate: let it fill the image, or be {:.0f} K from the plate's temperature",
+        contrast_k, std::max(kMinContrast_k, 2.0 * uneven_k))));
+  }
+  if (contrast_k <= uneven_k) {
     const cv::Mat all(level.size(), CV_8U, cv::Scalar(255));
     image.body = Patches(all, dead);
     image.hole_radius_px = std::sqrt(static_cast<double>(level.total()) / std::numbers::pi);

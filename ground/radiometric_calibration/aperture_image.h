@@ -25,8 +25,11 @@ struct ApertureImage {
 /// Pixels nearer than this to the rim of the hole are neither the black body's nor the plate's: the
 /// lens blurs it. Pixels.
 inline constexpr double kRimMargin_px = 6.0;
-/// An image that differs by less shows one thing only, kelvin.
+/// The plate has to differ from the black body by so much, kelvin.
 inline constexpr double kMinContrast_k = 10.0;
+/// A black body that fills the image may be uneven by so much: kelvin, and a fraction of its °C
+/// (thesis fig. 5.5 shows gradients towards the corners).
+inline constexpr double kMaxUneven_k = 2.0, kMaxUnevenFraction = 0.02;
 
 /// Finds the hole, which is the hottest part of the image or, before a black body whose temperature
 /// is nearer to that of the coldest, the coldest one. Refuses images in which a hole is too small,

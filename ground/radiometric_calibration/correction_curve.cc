@@ -17,6 +17,8 @@ constexpr int kMaxDegree = 2;
 constexpr int kNodes = 9;
 /// A higher degree has to leave this much less of what was held out.
 constexpr double kBetterBy = 0.8;
+/// Set points are not taken for more certain: so much a reading itself may be off by, kelvin.
+constexpr double kLeastSigma_k = 0.1;
 /// Set points whose readings are nearer are one, kelvin.
 constexpr double kApart_k = 1.0;
 
@@ -73,24 +75,43 @@ int DistinctReadings(const std::vector<SetPoint>& points) {
 Polynomial Fit(const std::vector<SetPoint>& points, const Scale& scale, int degree) {
   const auto rows = static_cast<Eigen::Index>(points.size());
   Eigen::MatrixXd powers(rows, degree + 1);
-  Eigen::VectorXd wrong(rows);
-  double own = 0.0;
+  Eigen::VectorXd wrong(rows), weights(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const SetPoint& point = points[static_cast<std::size_t>(i)];
     powers.row(i) = scale.Powers(point.reading_celsius, degree).transpose();
     wrong(i) = Wrong(point);
-    own += point.sigma_k * point.sigma_k / static_cast<double>(rows);
+    weights(i) = 1.0 / std::max(point.own_sigma_k, kLeastSigma_k);
   }
-  Polynomial fit{scale, powers.colPivHouseholderQr().solve(wrong), {}, 0.0};
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * powers;
+  Polynomial fit{scale, weighted.colPivHouseholderQr().solve(weights.cwiseProduct(wrong)), {}, 0.0};
+  const Eigen::VectorXd left = wrong - powers * fit.coefficients;
   const Eigen::Index freedom = rows - (degree + 1);
+  // What set points stray by may be more than they say, or less by chance.
+  double excess = 1.0;
   if (freedom > 0) {
-    fit.stray_k =
-        std::sqrt((wrong - powers * fit.coefficients).squaredNorm() / static_cast<double>(freedom));
+    const double chi2 = weights.cwiseProduct(left).squaredNorm() / static_cast<double>(freedom);
+    excess = std::max(1.0, chi2);
+    fit.stray_k = std::sqrt(chi2 * static_cast<double>(rows) / weights.squaredNorm());
   }
-  // What they stray by holds what each is uncertain by, or less by chance.
-  const double variance = std::max(own, fit.stray_k * fit.stray_k);
-  fit.covariance = variance * (powers.transpose() * powers).inverse();
+  const Eigen::MatrixXd inverse = (weighted.transpose() * weighted).inverse();
+  const bool is_stated =
+      std::ranges::any_of(points, [](const SetPoint& point) { return point.own_sigma_k > 0.0; });
+  // Where nobody states an uncertainty, what they stray by is all that is known.
+  const double unstated = std::pow(fit.stray_k / kLeastSigma_k, 2) * (freedom > 0 ? 1.0 : 0.0);
+  fit.covariance = (is_stated ? excess : unstated) * inverse;
   return fit;
+}
+
+/// What all set points are off by together at a reading, between those of the nearest ones.
+double CommonSigma(std::vector<SetPoint> points, double reading) {
+  std::ranges::sort(points, {}, &SetPoint::reading_celsius);
+  const auto above = std::ranges::lower_bound(points, reading, {}, &SetPoint::reading_celsius);
+  if (above == points.begin()) return points.front().common_sigma_k;
+  if (above == points.end()) return points.back().common_sigma_k;
+  const SetPoint& below = *(above - 1);
+  const double fraction =
+      (reading - below.reading_celsius) / (above->reading_celsius - below.reading_celsius);
+  return std::lerp(below.common_sigma_k, above->common_sigma_k, fraction);
 }
 
 /// Root mean square of what is wrong with points by a fit of the others; nullopt: too few.
@@ -106,10 +127,11 @@ std::optional<double> HeldOut(const std::vector<SetPoint>& points, const Scale& 
   return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-RadiometricCorrection TableOf(const Polynomial& fit, double common_sigma_k) {
+RadiometricCorrection TableOf(const Polynomial& fit, const std::vector<SetPoint>& points) {
   RadiometricCorrection table;
   const auto add = [&](double reading) {
-    const double sigma_k = std::hypot(fit.SigmaAt(reading), fit.stray_k, common_sigma_k);
+    const double sigma_k =
+        std::hypot(fit.SigmaAt(reading), fit.stray_k, CommonSigma(points, reading));
     table.readings_celsius.push_back(static_cast<float>(reading));
     table.corrections_k.push_back(static_cast<float>(fit.At(reading)));
     table.sigmas_k.push_back(static_cast<float>(sigma_k));
@@ -125,7 +147,7 @@ RadiometricCorrection TableOf(const Polynomial& fit, double common_sigma_k) {
 
 }  // namespace
 
-Result<CurveReport> FitCurve(const std::vector<SetPoint>& points, double common_sigma_k) {
+Result<CurveReport> FitCurve(const std::vector<SetPoint>& points) {
   if (points.empty()) return Err(FailedPrecondition("there is no set point"));
   const Scale scale = ScaleOf(points);
   CurveReport report;
@@ -141,7 +163,7 @@ Result<CurveReport> FitCurve(const std::vector<SetPoint>& points, double common_
   double squares = 0.0;
   for (const SetPoint& point : points) squares += Wrong(point) * Wrong(point);
   report.before_k = std::sqrt(squares / static_cast<double>(points.size()));
-  report.correction = TableOf(fit, common_sigma_k);
+  report.correction = TableOf(fit, points);
   if (Status status = Validate(report.correction); !status.ok()) {
     return Err(status.WithContext(
         "what set points tell is no correction of a camera (is one of them of another reading?)"));

@@ -13,15 +13,17 @@ using ::testing::HasSubstr;
 
 /// Set points of a camera that reads `reading(apparent)`.
 template <typename Reading>
-std::vector<SetPoint> SetPoints(std::initializer_list<double> apparent, const Reading& reading) {
+std::vector<SetPoint> SetPoints(std::initializer_list<double> apparent, const Reading& reading,
+                                double common_sigma_k = 0.0) {
   std::vector<SetPoint> points;
-  for (const double celsius : apparent) points.push_back({celsius, reading(celsius), 0.0});
+  for (const double celsius : apparent)
+    points.push_back({celsius, reading(celsius), 0.0, common_sigma_k});
   return points;
 }
 
 TEST(CorrectionCurveTest, ALineIsFound) {
   const auto reading = [](double celsius) { return 1.5 + 0.98 * celsius; };
-  const Result<CurveReport> found = FitCurve(SetPoints({20, 50, 80, 120}, reading), 0.3);
+  const Result<CurveReport> found = FitCurve(SetPoints({20, 50, 80, 120}, reading, 0.3));
   ASSERT_TRUE(found) << found.error().message();
   EXPECT_EQ(found->degree, 1);
   for (const double celsius : {20.0, 35.0, 90.0, 120.0})
@@ -34,7 +36,7 @@ TEST(CorrectionCurveTest, ALineIsFound) {
 
 TEST(CorrectionCurveTest, AParabolaIsFoundToo) {
   const auto reading = [](double celsius) { return celsius - 1e-4 * std::pow(celsius - 60.0, 2); };
-  const Result<CurveReport> found = FitCurve(SetPoints({0, 30, 60, 90, 120, 150}, reading), 0.0);
+  const Result<CurveReport> found = FitCurve(SetPoints({0, 30, 60, 90, 120, 150}, reading));
   ASSERT_TRUE(found) << found.error().message();
   EXPECT_EQ(found->degree, 2);
   for (const double celsius : {10.0, 75.0, 140.0})
@@ -48,10 +50,8 @@ TEST(CorrectionCurveTest, WhereALineTellsNoMoreItIsAnOffset) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     std::mt19937 engine(static_cast<unsigned>(seed));
     std::normal_distribution<double> noise(0.0, 0.2);
-    const Result<CurveReport> found =
-        FitCurve(SetPoints({20, 40, 60, 80, 100, 120},
-                           [&](double celsius) { return celsius - 1.0 + noise(engine); }),
-                 0.0);
+    const Result<CurveReport> found = FitCurve(SetPoints(
+        {20, 40, 60, 80, 100, 120}, [&](double celsius) { return celsius - 1.0 + noise(engine); }));
     ASSERT_TRUE(found);
     if (found->degree > 0) continue;
     ++offsets;
@@ -71,8 +71,7 @@ TEST(CorrectionCurveTest, SigmaHoldsWhatSetPointsStrayBy) {
     const auto camera = [](double celsius) { return 2.0 + 0.95 * celsius; };
     const Result<CurveReport> found =
         FitCurve(SetPoints({20, 40, 60, 80, 100, 120, 140, 160},
-                           [&](double celsius) { return camera(celsius) + noise(engine); }),
-                 0.0);
+                           [&](double celsius) { return camera(celsius) + noise(engine); }));
     ASSERT_TRUE(found);
     for (const double celsius : {25.0, 95.0, 155.0}) {
       // Another set point strays as these did.
@@ -87,23 +86,46 @@ TEST(CorrectionCurveTest, SigmaHoldsWhatSetPointsStrayBy) {
 }
 
 TEST(CorrectionCurveTest, OneSetPointTellsAnOffset) {
-  const Result<CurveReport> found = FitCurve({{100.0, 98.5, 0.4}}, 0.3);
+  const Result<CurveReport> found = FitCurve({{100.0, 98.5, 0.4, 0.3}});
   ASSERT_TRUE(found) << found.error().message();
   EXPECT_NEAR(found->correction.At(20.0), 1.5, 1e-6);
   EXPECT_NEAR(found->correction.SigmaAt(20.0), 0.5, 1e-6);
   EXPECT_TRUE(std::isnan(found->held_out_k));
 }
 
+TEST(CorrectionCurveTest, ASetPointThatIsUncertainTellsLess) {
+  // The middle one is 3 K off, and says that it may be.
+  const auto points = [](double sigma_k) {
+    return std::vector<SetPoint>{{20, 19, 0.1}, {60, 62, sigma_k}, {100, 99, 0.1}, {140, 139, 0.1}};
+  };
+  EXPECT_NEAR(FitCurve(points(5.0)).value().correction.At(60.0), 1.0, 0.05);
+  EXPECT_LT(FitCurve(points(0.1)).value().correction.At(60.0), 0.5);
+}
+
+TEST(CorrectionCurveTest, WhatAllAreOffByTogetherMayGrow) {
+  const std::vector<SetPoint> points = {
+      {20, 19, 0.0, 0.2}, {60, 59, 0.0, 0.3}, {100, 99, 0.0, 0.5}};
+  const RadiometricCorrection correction = FitCurve(points).value().correction;
+  EXPECT_EQ(correction.sigmas_k.size(), 1U) << "an offset, known as in the middle";
+  EXPECT_NEAR(correction.sigmas_k.front(), 0.3, 1e-3);
+}
+
+TEST(CorrectionCurveTest, WhatPredictsNothingBetterIsNotKnown) {
+  const std::vector<SetPoint> right = {{20, 20.3}, {60, 59.7}, {100, 100.3}};
+  EXPECT_FALSE(FitCurve(right).value().IsKnown());
+  const std::vector<SetPoint> wrong = {{20, 22.3}, {60, 61.7}, {100, 102.3}};
+  EXPECT_TRUE(FitCurve(wrong).value().IsKnown());
+}
+
 TEST(CorrectionCurveTest, WhatMakesNoCurveIsRefused) {
-  EXPECT_THAT(FitCurve({}, 0.1).error().message(), HasSubstr("no set point"));
+  EXPECT_THAT(FitCurve({}).error().message(), HasSubstr("no set point"));
   // A camera that reads the same before everything.
   const auto stuck =
       SetPoints({20, 40, 60, 80}, [](double celsius) { return 50.0 + 0.01 * celsius; });
-  const Result<CurveReport> found = FitCurve(stuck, 0.1);
+  const Result<CurveReport> found = FitCurve(stuck);
   ASSERT_TRUE(found) << "readings are one: all that can be told is an offset";
   EXPECT_GT(found->correction.SigmaAt(50.0), 20.0);
-  EXPECT_THAT(FitCurve({{300.0, 20.0, 0.0}}, 0.1).error().message(),
-              HasSubstr("no correction of a camera"));
+  EXPECT_THAT(FitCurve({{300.0, 20.0}}).error().message(), HasSubstr("no correction of a camera"));
 }
 
 }  // namespace

@@ -81,18 +81,28 @@ Sums SumsOf(const std::vector<Block>& blocks) {
   return sums;
 }
 
-/// Root mean square of what is left of each epoch by the slope of the others.
-double HeldOut(const std::vector<Block>& centered) {
+/// Says what each epoch tells of the others, and they of it.
+struct EpochComparison {
+  double left_k = 0.0;  ///< Root mean square of what the slope of the others leaves.
+  double sigma = 0.0;   ///< Uncertainty of the slope of all, by leaving one out (jackknife).
+};
+
+EpochComparison CompareEpochs(const std::vector<Block>& centered) {
   std::map<int, std::vector<Block>> epochs;
   for (const Block& block : centered) epochs[block.epoch].push_back(block);
   const Sums all = SumsOf(centered);
-  double left = 0.0;
+  double left = 0.0, sum = 0.0, squares = 0.0;
+  const auto count = static_cast<double>(epochs.size());
   for (const auto& [epoch, blocks] : epochs) {
     const Sums own = SumsOf(blocks);
-    const Sums others{all.changes2 - own.changes2, all.products - own.products};
-    left += std::max(0.0, own.Left(others.Slope()));
+    const double slope = Sums{all.changes2 - own.changes2, all.products - own.products}.Slope();
+    left += std::max(0.0, own.Left(slope));
+    sum += slope;
+    squares += slope * slope;
   }
-  return std::sqrt(left / static_cast<double>(centered.size()));
+  const double variance = (count - 1.0) / count * (squares - sum * sum / count);
+  return {std::sqrt(left / static_cast<double>(centered.size())),
+          std::sqrt(std::max(0.0, variance))};
 }
 
 double MostChange(const std::vector<DriftSample>& samples) {
@@ -130,12 +140,15 @@ Result<DriftReport> FitHousingDrift(const std::vector<DriftSample>& samples) {
         samples.size(), report.epochs)));
   }
   Center(blocks);
-  report.held_out_k = HeldOut(blocks);
+  const EpochComparison compared = CompareEpochs(blocks);
+  report.held_out_k = compared.left_k;
   const Sums sums = SumsOf(blocks);
   const double slope = sums.Slope();
   const auto freedom = static_cast<double>(blocks.size() - epochs.size() - 1);
   report.before_k = std::sqrt(sums.readings2 / static_cast<double>(blocks.size()));
-  report.drift = {slope, std::sqrt(std::max(0.0, sums.Left(slope)) / freedom / sums.changes2)};
+  // What strays is not always noise: epochs may differ by more.
+  const double noise = std::sqrt(std::max(0.0, sums.Left(slope)) / freedom / sums.changes2);
+  report.drift = {slope, std::max(noise, compared.sigma)};
   return report;
 }
 

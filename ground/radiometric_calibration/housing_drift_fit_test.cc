@@ -46,6 +46,17 @@ TEST(HousingDriftFitTest, TheSlopeIsFoundWithItsUncertainty) {
   EXPECT_LT(std::sqrt(squares), 1.4);
 }
 
+/// A slope that is another in each epoch is no more certain than they agree.
+TEST(HousingDriftFitTest, EpochsThatDifferMakeItUncertain) {
+  std::vector<DriftSample> samples = WarmUp(5.0, 4.0, 1, 0.01);
+  for (DriftSample& sample : samples)
+    sample.reading_celsius += (sample.epoch % 2 == 0 ? 0.5 : -0.5) * sample.housing_change_k;
+  const Result<DriftReport> found = FitHousingDrift(samples);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_GT(found->drift.sigma, 0.15);
+  EXPECT_TRUE(found->IsKnown());
+}
+
 TEST(HousingDriftFitTest, ACameraThatDoesNotDriftIsNotCorrected) {
   const Result<DriftReport> found = FitHousingDrift(WarmUp(5.0, 0.0, 1));
   ASSERT_TRUE(found) << found.error().message();
@@ -57,6 +68,9 @@ TEST(HousingDriftFitTest, AWarmCameraTellsNothing) {
   EXPECT_THAT(FitHousingDrift(WarmUp(0.2, 4.0, 1)).error().message(),
               HasSubstr("from switching it on"));
   EXPECT_THAT(FitHousingDrift({}).error().message(), HasSubstr("from switching it on"));
+  std::vector<DriftSample> without_nuc = WarmUp(5.0, 4.0, 1);
+  for (DriftSample& sample : without_nuc) sample.epoch = 0;
+  EXPECT_THAT(FitHousingDrift(without_nuc).error().message(), HasSubstr("1 parts between NUCs"));
   std::vector<DriftSample> few = WarmUp(5.0, 4.0, 1);
   few.resize(150);
   EXPECT_THAT(FitHousingDrift(few).error().message(), HasSubstr("too few"));

@@ -18,14 +18,17 @@ namespace {
 /// Near fraction, logarithm of the near sigma in pixels, total fraction.
 using Parameters = Eigen::Vector3d;
 
-constexpr int kMinViews = 3;
+constexpr int kMinHoles = 3;
 /// The largest hole has to have this many times the radius of the smallest one.
 constexpr double kMinRatio = 2.0;
 /// Reaches to begin with, pixels: the cost has several minima over it.
 constexpr double kFirstReaches_px[] = {15.0, 40.0, 100.0};
 constexpr double kFirstFraction = 0.02;
 constexpr int kMaxSteps = 20;
-constexpr double kSmallStep = 1e-5;  // Of fractions, and of the logarithm.
+/// Steps to either side for derivatives: images hold single precision.
+constexpr double kFractionStep = 1e-3, kLogarithmStep = 1e-2;
+/// Radii that differ by less are one.
+constexpr double kDistinct = 1.15;
 
 SceneInfluence InfluenceOf(const Parameters& parameters) {
   return {.near_fraction = parameters(0),
@@ -123,21 +126,25 @@ struct Linearisation {
 Linearisation Linearise(const std::vector<ApertureView>& views, const Parameters& parameters) {
   Linearisation at{Corrected(views, parameters), {}};
   for (int p = 0; p < parameters.size(); ++p) {
+    Parameters low = parameters, high = parameters;
+    const double step = p == 1 ? kLogarithmStep : kFractionStep;
+    low(p) -= step;
+    high(p) += step;
     // Fractions may be at their least, the reach at its most.
-    const double step = p == 1 ? -kSmallStep : kSmallStep;
-    Parameters moved = parameters;
-    moved(p) += step;
-    std::vector<Readings> slope = Corrected(views, moved);
+    low = WithinBounds(low);
+    high = WithinBounds(high);
+    const std::vector<Readings> below = Corrected(views, low);
+    std::vector<Readings> slope = Corrected(views, high);
     for (std::size_t i = 0; i < slope.size(); ++i) {
-      slope[i].body = (slope[i].body - at.readings[i].body) / step;
-      slope[i].plate = (slope[i].plate - at.readings[i].plate) / step;
+      slope[i].body = (slope[i].body - below[i].body) / (high(p) - low(p));
+      slope[i].plate = (slope[i].plate - below[i].plate) / (high(p) - low(p));
     }
     at.slopes.push_back(std::move(slope));
   }
   return at;
 }
 
-/// The step towards the least squares of deviations.
+/// Returns the step towards the least squares of deviations.
 Parameters StepOf(const Linearisation& at, const Deviations& deviations, double damping) {
   const Eigen::VectorXd residuals = deviations.Of(at.readings);
   Eigen::MatrixXd jacobian(residuals.size(), 3);
@@ -155,7 +162,7 @@ struct Solution {
   double cost = 0.0;
 };
 
-/// Levenberg and Marquardt's way from a first guess.
+/// Goes Levenberg and Marquardt's way from a first guess.
 Solution Descend(const std::vector<ApertureView>& views, Parameters parameters) {
   const Deviations deviations(views, -1);
   Linearisation at = Linearise(views, parameters);
@@ -192,15 +199,29 @@ std::optional<double> ApartFromOthers(const std::vector<ApertureView>& views,
   return readings[view].body.mean() - sum / count;
 }
 
-Status CheckViews(const std::vector<ApertureView>& views) {
-  const auto radius = [](const ApertureView& view) { return view.image.hole_radius_px; };
-  if (static_cast<int>(views.size()) < kMinViews) {
-    return FailedPrecondition(
-        fmt::format("the scene's influence needs the black body through three or more holes of "
-                    "different radius, "
-                    "at one temperature: there are {}",
-                    views.size()));
+/// How many different holes a setting was seen through, and the largest of its radii as a ratio to
+/// the smallest.
+struct HoleRange {
+  int holes = 0;
+  double ratio = 0.0;
+};
+
+HoleRange HolesOf(const std::vector<ApertureView>& views, int setting) {
+  std::vector<double> radii;
+  for (const ApertureView& view : views)
+    if (view.setting == setting) radii.push_back(view.image.hole_radius_px);
+  std::ranges::sort(radii);
+  HoleRange range{0, radii.back() / radii.front()};
+  double last = 0.0;
+  for (const double radius : radii) {
+    if (radius < kDistinct * last) continue;
+    ++range.holes;
+    last = radius;
   }
+  return range;
+}
+
+Status CheckViews(const std::vector<ApertureView>& views) {
   for (const ApertureView& view : views) {
     if (view.image.celsius.width() != views.front().image.celsius.width() ||
         view.image.celsius.height() != views.front().image.celsius.height()) {
@@ -208,15 +229,41 @@ Status CheckViews(const std::vector<ApertureView>& views) {
     }
   }
   // Only within one setting can holes be compared.
-  double ratio = 0.0;
-  for (const ApertureView& a : views)
-    for (const ApertureView& b : views)
-      if (a.setting == b.setting) ratio = std::max(ratio, radius(a) / radius(b));
-  if (ratio >= kMinRatio) return OkStatus();
+  HoleRange best;
+  for (const ApertureView& view : views) {
+    const HoleRange range = HolesOf(views, view.setting);
+    if (range.holes > best.holes || (range.holes == best.holes && range.ratio > best.ratio))
+      best = range;
+  }
+  if (best.holes >= kMinHoles && best.ratio >= kMinRatio) return OkStatus();
   return FailedPrecondition(fmt::format(
-      "at no temperature of the black body the largest hole has {} times the radius of the "
-      "smallest one: the scene's influence cannot be told",
-      kMinRatio));
+      "it takes the black body at one temperature through three or more holes of different radius, "
+      "the largest twice as large as the smallest or more: there are {}{}",
+      best.holes,
+      best.holes > 1 ? fmt::format(", the largest {:.1f} times as large", best.ratio) : ""));
+}
+
+/// Squares of how far views read from the others of their setting, and their number.
+struct Apart {
+  double squares = 0.0;
+  int views = 0;
+
+  void Add(const std::optional<double>& apart_k) {
+    if (!apart_k) return;
+    squares += *apart_k * *apart_k;
+    ++views;
+  }
+  double Rms() const { return std::sqrt(squares / std::max(1, views)); }
+};
+
+/// How far a view reads from the others once it is corrected by other parameters.
+std::optional<double> ApartFromOthers(const std::vector<ApertureView>& views,
+                                      const Parameters& parameters, std::size_t view) {
+  // The view itself, and its setting.
+  std::vector<ApertureView> same{views[view]};
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (i != view && views[i].setting == views[view].setting) same.push_back(views[i]);
+  return ApartFromOthers(same, Corrected(same, parameters), 0);
 }
 
 }  // namespace
@@ -224,6 +271,15 @@ Status CheckViews(const std::vector<ApertureView>& views) {
 bool InfluenceReport::IsKnown() const {
   constexpr double kLeft = 0.5;
   return apart_after_k < kLeft * apart_before_k;
+}
+
+double ApartWithout(const SceneInfluence& influence, const std::vector<ApertureView>& views) {
+  const std::vector<Readings> readings = Corrected(
+      views,
+      {influence.near_fraction, std::log(influence.near_sigma_px), influence.total_fraction});
+  Apart apart;
+  for (std::size_t i = 0; i < views.size(); ++i) apart.Add(ApartFromOthers(views, readings, i));
+  return apart.Rms();
 }
 
 Result<InfluenceReport> FitInfluence(const std::vector<ApertureView>& views) {
@@ -235,34 +291,28 @@ Result<InfluenceReport> FitInfluence(const std::vector<ApertureView>& views) {
   }
   InfluenceReport report;
   report.influence = InfluenceOf(best->parameters);
+  report.apart_before_k = ApartWithout({}, views);
   const Linearisation at = Linearise(views, best->parameters);
-  std::vector<Readings> measured;
-  for (const ApertureView& view : views)
-    measured.push_back(ReadingsOf(view.image, view.image.celsius));
   // The jackknife: what the others tell, by one step from what all tell.
   std::vector<Parameters> others;
-  double before = 0.0, after = 0.0;
+  Parameters mean = Parameters::Zero();
+  Apart after;
+  const auto count = static_cast<double>(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Parameters without =
         WithinBounds(best->parameters + StepOf(at, Deviations(views, static_cast<int>(i)), 0.0));
     others.push_back(without);
-    const std::optional<double> apart = ApartFromOthers(views, measured, i);
-    if (!apart) continue;
-    before += *apart * *apart;
-    const double corrected = *ApartFromOthers(views, Corrected(views, without), i);
-    after += corrected * corrected;
-    ++report.views;
+    mean += without / count;
+    after.Add(ApartFromOthers(views, without, i));
   }
-  report.apart_before_k = std::sqrt(before / std::max(1, report.views));
-  report.apart_after_k = std::sqrt(after / std::max(1, report.views));
-  const auto count = static_cast<double>(others.size());
-  Parameters mean = Parameters::Zero(), variance = Parameters::Zero();
-  for (const Parameters& each : others) mean += each / count;
-  for (const Parameters& each : others)
-    variance += (count - 1.0) / count * (each - mean).cwiseAbs2();
-  report.near_fraction_sigma = std::sqrt(variance(0));
-  report.near_sigma_px_sigma = report.influence.near_sigma_px * std::sqrt(variance(1));
-  report.total_fraction_sigma = std::sqrt(variance(2));
+  report.views = after.views;
+  report.apart_after_k = after.Rms();
+  // The logarithm of the reach was solved for.
+  const Parameters scale(1.0, report.influence.near_sigma_px, 1.0);
+  for (const Parameters& each : others) {
+    const Parameters off = scale.cwiseProduct(each - mean);
+    report.covariance += (count - 1.0) / count * off * off.transpose();
+  }
   return report;
 }
 

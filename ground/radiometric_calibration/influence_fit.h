@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "common/base/status.h"
@@ -17,8 +19,9 @@ struct ApertureView {
 /// Tells what aperture images say of a camera's scene influence.
 struct InfluenceReport {
   SceneInfluence influence;
-  /// Standard uncertainties, by leaving out one view after the other.
-  double near_fraction_sigma = 0.0, near_sigma_px_sigma = 0.0, total_fraction_sigma = 0.0;
+  /// Covariance of near_fraction, near_sigma_px and total_fraction, by leaving out one view after
+  /// the other.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   /// Root mean square of how far the black body reads from the others' mean of its setting, as
   /// measured and corrected, each view by what the others tell. Kelvin.
   double apart_before_k = 0.0, apart_after_k = 0.0;
@@ -26,12 +29,19 @@ struct InfluenceReport {
 
   /// Views that were left out read less than half as far apart once they are corrected.
   bool IsKnown() const;
+  /// Standard uncertainty of a value, numbered as in `covariance`.
+  double Sigma(int value) const { return std::sqrt(covariance(value, value)); }
 };
 
 /// Finds the scene influence with which the black body of one setting reads the same through each
 /// hole and all over the hole, and the plate the same all over the image (thesis 5.1, figures 5.6
 /// to 5.9). What black body and plate read then is free: an error of all readings does not matter.
-/// Refuses views that cannot tell: fewer than three holes, or too much alike.
+/// Refuses views that cannot tell: fewer than three holes at any one temperature, or too much
+/// alike.
 Result<InfluenceReport> FitInfluence(const std::vector<ApertureView>& views);
+
+/// Root mean square of how far the black body reads from the others' mean of its setting once
+/// `influence` is taken out, kelvin.
+double ApartWithout(const SceneInfluence& influence, const std::vector<ApertureView>& views);
 
 }  // namespace isotherm

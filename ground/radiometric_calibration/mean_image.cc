@@ -5,23 +5,26 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/frame/radiometric_scale.h"
 #include "ground/camera_calibration/calibration_images.h"
 #include "ground/radiometric_calibration/recorded_thermal.h"
+#include "ground/thermal/nuc_epochs.h"
+#include "ground/thermal/reading_corrections.h"
 
 namespace isotherm {
 namespace {
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
-/// So many images in a row are averaged and compared with the first ones.
-constexpr int kBlockFrames = 20;
-/// Root mean square by which they may differ, kelvin: the noise of such a mean is far below, as is
-/// a plate that warms up for a few seconds.
-constexpr double kMaxChange_k = 0.3;
+/// So many images of a recording in a row are averaged and compared with the first ones.
+constexpr int kBlockFrames = 5;
+/// Root mean square by which they may differ, kelvin. The noise of such a mean is far below, as is
+/// a plate that warms up for a few seconds; a hole that moves by two pixels is far above.
+constexpr double kMaxChange_k = 0.5;
 
-/// A sum of images.
+/// Sums images up.
 struct ImageSum {
   Image<double> sum;
   int frames = 0;
@@ -47,9 +50,12 @@ double Difference(const ImageSum& a, const ImageSum& b) {
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
-/// Averages images of a camera that rests, in the order of their times.
+/// Averages images of a camera that rests, in the order of their times. Every `block_frames` of
+/// them are compared with the first ones.
 class Averager {
  public:
+  explicit Averager(int block_frames) : block_frames_(block_frames) {}
+
   Status Add(const Image<float>& celsius) {
     if (all_.frames > 0 &&
         (celsius.width() != all_.sum.width() || celsius.height() != all_.sum.height())) {
@@ -59,7 +65,24 @@ class Averager {
     }
     all_.Add(celsius);
     block_.Add(celsius);
-    if (block_.frames < kBlockFrames) return OkStatus();
+    return block_.frames < block_frames_ ? OkStatus() : CloseBlock();
+  }
+
+  int frames() const { return all_.frames; }
+
+  /// There are some images.
+  Result<Image<float>> Finish() {
+    if (block_.frames > 0 && first_.frames > 0) {
+      if (Status status = CloseBlock(); !status.ok()) return Err(status);
+    }
+    Image<float> mean(all_.sum.width(), all_.sum.height());
+    std::ranges::transform(all_.sum.pixels(), mean.pixels().begin(),
+                           [&](double sum) { return static_cast<float>(sum / all_.frames); });
+    return mean;
+  }
+
+ private:
+  Status CloseBlock() {
     if (first_.frames == 0) first_ = block_;
     const double change_k = Difference(first_, block_);
     block_ = ImageSum();
@@ -70,16 +93,7 @@ class Averager {
         all_.frames, change_k));
   }
 
-  int frames() const { return all_.frames; }
-
-  Image<float> Mean() const {
-    Image<float> mean(all_.sum.width(), all_.sum.height());
-    std::ranges::transform(all_.sum.pixels(), mean.pixels().begin(),
-                           [&](double sum) { return static_cast<float>(sum / all_.frames); });
-    return mean;
-  }
-
- private:
+  const int block_frames_;
   ImageSum all_, first_, block_;
 };
 
@@ -94,8 +108,12 @@ Image<float> ToCelsius(const Image<std::uint16_t>& counts, const RadiometricScal
 
 Status AverageRecording(const std::filesystem::path& path, std::optional<Rig>& rig,
                         const std::function<void(double)>& progress, Averager& averager) {
+  NucEpochs epochs;
   const Status status = ReadThermalFrames(path, rig, progress, [&](const ThermalFrame& frame) {
-    return frame.valid ? averager.Add(ToCelsius(frame.temperature_raw, frame.scale)) : OkStatus();
+    const NucAge nuc = epochs.Follow(frame);
+    if (!frame.valid) return OkStatus();
+    const auto drift = rig ? rig->thermal_sensor.housing_drift : std::nullopt;
+    return averager.Add(ToCelsius(frame.temperature_raw, WithoutDrift(frame.scale, drift, nuc)));
   });
   if (!status.ok() || averager.frames() > 0) return status;
   return FailedPrecondition(
@@ -108,6 +126,12 @@ Status AverageFiles(const std::vector<std::filesystem::path>& files, const Radio
   for (std::size_t i = 0; i < files.size(); ++i) {
     Result<Image<float>> image = ReadCalibrationImage(files[i]);
     if (!image) return image.error();
+    // Units of temperatures begin at 173 K.
+    if (std::ranges::all_of(image->pixels(), [](float v) { return !(v > 255.0F); })) {
+      return FailedPrecondition(
+          fmt::format("{}: has no temperatures: save it as the camera gives it, grey with 16 bits",
+                      files[i].string()));
+    }
     for (float& value : image->pixels())
       value = std::isnan(value) ? kNoValue : scale.Celsius(static_cast<double>(value));
     if (Status status = averager.Add(*image); !status.ok())
@@ -135,9 +159,10 @@ Result<std::vector<std::filesystem::path>> PngFilesOf(const std::filesystem::pat
 
 Result<MeanImage> ReadMeanImage(const std::filesystem::path& path, std::optional<Rig>& rig,
                                 const std::function<void(double)>& progress) {
-  Averager averager;
   std::error_code error;
-  if (path.extension() == ".png" || std::filesystem::is_directory(path, error)) {
+  const bool is_png = path.extension() == ".png" || std::filesystem::is_directory(path, error);
+  Averager averager(is_png ? 1 : kBlockFrames);
+  if (is_png) {
     const Result<std::vector<std::filesystem::path>> files = PngFilesOf(path);
     if (!files) return Err(files.error());
     const RadiometricScale scale = rig ? rig->thermal_scale : RadiometricScale();
@@ -146,7 +171,9 @@ Result<MeanImage> ReadMeanImage(const std::filesystem::path& path, std::optional
   } else if (Status status = AverageRecording(path, rig, progress, averager); !status.ok()) {
     return Err(status);
   }
-  return MeanImage{averager.Mean(), averager.frames()};
+  Result<Image<float>> mean = averager.Finish();
+  if (!mean) return Err(mean.error().WithContext(path.string()));
+  return MeanImage{std::move(*mean), averager.frames()};
 }
 
 }  // namespace isotherm

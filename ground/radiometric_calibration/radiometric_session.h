@@ -18,7 +18,8 @@ namespace isotherm {
 struct RadiometricConditions {
   double emissivity = 1.0;          ///< The black body's.
   double reflected_celsius = 23.0;  ///< The black body reflects this.
-  double common_sigma_k = 0.5;      ///< By which all its temperatures may be off together.
+  double common_sigma_k = 0.5;      ///< All its temperatures may be off by this together.
+  double emissivity_sigma = 0.0, reflected_sigma_k = 0.0;  ///< Standard uncertainties.
 };
 
 /// Says what a row of the table became.
@@ -29,6 +30,7 @@ struct RowReport {
   double apparent_celsius = 0.0;  ///< A right camera reads this.
   double measured_celsius = 0.0;  ///< The camera reads this.
   double own_celsius = 0.0;       ///< Without the scene's influence.
+  double common_sigma_k = 0.0;    ///< All should read otherwise by this together.
   double left_k = 0.0;            ///< Wrong after the correction.
 };
 
@@ -39,8 +41,9 @@ struct RadiometricReport {
   std::string why_no_influence;
   SceneInfluence taken_out;  ///< It was taken out of images before the curve was found.
   CurveReport curve;
+  int temperatures = 0;  ///< Different ones of the black body.
 
-  /// All that is wrong is within twice its uncertainty.
+  /// All that is corrected is within twice its uncertainty, that of the black body included.
   bool IsRightAsItIs() const;
 };
 

@@ -63,6 +63,11 @@ Status ReadThermalFrames(const std::filesystem::path& recording, std::optional<R
     if (thermal == nullptr) continue;
     const std::optional<ThermalFrame> frame = FrameOf(thermal->frame);
     if (!frame) continue;
+    if (frame->valid && frame->temperature_raw.empty()) {
+      return FailedPrecondition(fmt::format(
+          "{}: its camera tells counts, not temperatures: there are no readings to calibrate",
+          recording.string()));
+    }
     if (Status status = take(*frame); !status.ok()) return status.WithContext(recording.string());
   }
 }

@@ -60,9 +60,9 @@ Result<SetPointRow> ParseRow(std::string_view line, const std::filesystem::path&
   }
   if (columns.size() == 3) {
     const Result<double> sigma = ParseNumber(columns[2]);
-    if (!sigma || !(*sigma >= 0.0 && *sigma <= 100.0)) {
-      return Err(InvalidArgument(
-          fmt::format("an uncertainty must be 0 to 100 K, got \"{}\"", columns[2])));
+    if (!sigma || !(*sigma >= 0.0 && *sigma <= 10.0)) {
+      return Err(
+          InvalidArgument(fmt::format("an uncertainty must be 0 to 10 K, got \"{}\"", columns[2])));
     }
     row.sigma_k = *sigma;
   }

@@ -40,7 +40,8 @@ TEST(SetPointTableTest, WhatIsNoRowIsNamed) {
   EXPECT_THAT(message("nan, 20"), HasSubstr("black body's temperature"));
   EXPECT_THAT(message("2000, 20"), HasSubstr("-100 to 1500"));
   EXPECT_THAT(message("20, 20000"), HasSubstr("a reading must be"));
-  EXPECT_THAT(message("20, 20, -1"), HasSubstr("uncertainty must be 0 to 100 K"));
+  EXPECT_THAT(message("20, 20, -1"), HasSubstr("uncertainty must be 0 to 10 K"));
+  EXPECT_THAT(message("30,5,29"), HasSubstr("uncertainty must be 0 to 10 K")) << "decimal commas";
   EXPECT_THAT(ParseSetPoints("# nothing\n", "bb.csv", "").error().message(),
               HasSubstr("bb.csv: there is no row"));
   std::string many;

@@ -15,6 +15,9 @@ struct NucAge {
   /// Change of the housing's temperature since the first valid frame after it; nullopt = the camera
   /// does not tell.
   std::optional<double> housing_change_k = std::nullopt;
+  /// Seconds between the NUC and that frame, in which it may have changed unseen; 0 before the
+  /// first NUC that was seen, since what drifted until then is the same for all frames.
+  double unseen_s = 0.0;
 };
 
 /// Follows the shutter through a stream of thermal frames, valid or not, in order.
@@ -26,7 +29,10 @@ class NucEpochs {
   NucAge Follow(const ThermalFrame& frame);
 
  private:
+  void CountNuc();
+
   NucAge age_;
+  bool had_nuc_ = false;
   bool had_valid_ = false;
   bool shut_ = false;  ///< The last frame was not valid.
   std::optional<CaptureTime> first_, last_shut_;

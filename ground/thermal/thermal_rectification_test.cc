@@ -147,7 +147,9 @@ TEST(ThermalRectifierTest, ReadingsAreCorrectedOnceTheSceneIsTakenOut) {
 
 TEST(ReadingCorrectionsTest, TheHousingsDriftIsTakenOutWhereItIsKnown) {
   const HousingDrift drift{4.0, 0.1};
-  const NucAge warmer{.housing_change_k = 0.5}, silent{};
+  NucAge warmer;
+  warmer.housing_change_k = 0.5;
+  const NucAge silent;
   EXPECT_NEAR(WithoutDrift(kCentikelvin, drift, warmer).Celsius(30'000),
               kCentikelvin.Celsius(30'000) - 2.0F, 1e-4);
   EXPECT_EQ(WithoutDrift(kCentikelvin, std::nullopt, warmer), kCentikelvin);

@@ -47,12 +47,14 @@ UncertaintyBudget BudgetOf(const FrameUncertainty& frame, const PixelUncertainty
 double DriftKelvin(const CameraUncertainty& camera, const NucAge& nuc) {
   const double minutes = nuc.seconds_since.value_or(nuc.seconds_followed) / kSPerMin;
   const double pattern_k = camera.pattern_drift_k_per_sqrt_min * std::sqrt(minutes);
-  // A rate that lies anywhere between its limits: half their distance over the root of 3.
-  const double housing_k =
-      nuc.housing_change_k
-          ? camera.left_per_housing_k * std::abs(*nuc.housing_change_k)
-          : camera.error_per_housing_k * kWarmHousingRate_k_per_min * minutes / std::numbers::sqrt3;
-  return std::hypot(pattern_k, housing_k);
+  const auto unseen_k = [&](double seconds) {
+    // A rate that lies anywhere between its limits: half their distance over the root of 3.
+    return camera.error_per_housing_k * kWarmHousingRate_k_per_min * seconds / kSPerMin /
+           std::numbers::sqrt3;
+  };
+  if (!nuc.housing_change_k) return std::hypot(pattern_k, unseen_k(kSPerMin * minutes));
+  const double left_k = camera.left_per_housing_k * std::abs(*nuc.housing_change_k);
+  return std::hypot(pattern_k, left_k, unseen_k(nuc.unseen_s));
 }
 
 double ExtrinsicSigmaPx(std::optional<double> reprojection_error_px) {

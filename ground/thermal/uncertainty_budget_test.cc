@@ -132,6 +132,10 @@ TEST(DriftKelvinTest, AHousingThatIsToldReplacesTheRate) {
   EXPECT_NEAR(DriftKelvin(sensor, {.seconds_since = 600.0, .housing_change_k = -0.25}), 1.0,
               kExact);
   EXPECT_EQ(DriftKelvin(sensor, {.seconds_since = 600.0, .housing_change_k = 0.0}), 0.0);
+  EXPECT_NEAR(
+      DriftKelvin(sensor, {.seconds_since = 600.0, .housing_change_k = 0.0, .unseen_s = 60.0}),
+      0.4 / std::sqrt(3.0), kExact)
+      << "nobody saw the first minute";
   const CameraUncertainty calibrated{.left_per_housing_k = 0.2};
   EXPECT_NEAR(DriftKelvin(calibrated, {.seconds_since = 600.0, .housing_change_k = -0.25}), 0.05,
               kExact)
