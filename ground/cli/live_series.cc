@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,7 +28,7 @@ class PoseKeeper {
   PoseKeeper(const CalibrationTarget& target, const std::vector<CalibratedStream>& streams)
       : coach_(target, Names(streams)) {
     for (const CalibratedStream stream : streams)
-      streams_.push_back({stream, StillPoseFinder({}), {"live", {}, {}}});
+      streams_.push_back({stream, StillPoseFinder({}), {"live", {}, {}}, 0});
   }
 
   void Take(CalibratedStream stream, const FrameHeader& header,
@@ -70,6 +71,7 @@ class PoseKeeper {
     CalibratedStream stream;
     StillPoseFinder finder;
     ImageSeries series;
+    int refused = 0;  ///< Poses of which that was said.
   };
 
   static std::vector<std::string> Names(const std::vector<CalibratedStream>& streams) {
@@ -84,8 +86,8 @@ class PoseKeeper {
     coach_.Add(static_cast<int>(index), pose->mean);
     const CoachStatus& status = coach_.status()[index];
     std::string line = status.Line();
-    if (status.refused > refused_) {
-      refused_ = status.refused;
+    if (status.refused > stream.refused) {
+      stream.refused = status.refused;
       line += fmt::format(" (this pose does not count: {})", status.last_refusal);
     }
     fmt::print("{}\n", line);
@@ -96,7 +98,6 @@ class PoseKeeper {
 
   CalibrationCoach coach_;
   std::vector<Stream> streams_;
-  int refused_ = 0;
 };
 
 }  // namespace

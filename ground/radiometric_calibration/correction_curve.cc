@@ -18,7 +18,7 @@ constexpr int kNodes = 9;
 /// A higher degree has to leave this much less of what was held out.
 constexpr double kBetterBy = 0.8;
 /// Set points are not taken for more certain: so much a reading itself may be off by, kelvin.
-constexpr double kLeastSigma_k = 0.1;
+constexpr double kMinSigma_k = 0.1;
 /// Set points whose readings are nearer are one, kelvin.
 constexpr double kApart_k = 1.0;
 
@@ -80,7 +80,7 @@ Polynomial Fit(const std::vector<SetPoint>& points, const Scale& scale, int degr
     const SetPoint& point = points[static_cast<std::size_t>(i)];
     powers.row(i) = scale.Powers(point.reading_celsius, degree).transpose();
     wrong(i) = Wrong(point);
-    weights(i) = 1.0 / std::max(point.own_sigma_k, kLeastSigma_k);
+    weights(i) = 1.0 / std::max(point.own_sigma_k, kMinSigma_k);
   }
   const Eigen::MatrixXd weighted = weights.asDiagonal() * powers;
   Polynomial fit{scale, weighted.colPivHouseholderQr().solve(weights.cwiseProduct(wrong)), {}, 0.0};
@@ -97,12 +97,12 @@ Polynomial Fit(const std::vector<SetPoint>& points, const Scale& scale, int degr
   const bool is_stated =
       std::ranges::any_of(points, [](const SetPoint& point) { return point.own_sigma_k > 0.0; });
   // Where nobody states an uncertainty, what they stray by is all that is known.
-  const double unstated = std::pow(fit.stray_k / kLeastSigma_k, 2) * (freedom > 0 ? 1.0 : 0.0);
+  const double unstated = std::pow(fit.stray_k / kMinSigma_k, 2) * (freedom > 0 ? 1.0 : 0.0);
   fit.covariance = (is_stated ? excess : unstated) * inverse;
   return fit;
 }
 
-/// What all set points are off by together at a reading, between those of the nearest ones.
+/// Returns what all set points are off by together at a reading, between those of the nearest ones.
 double CommonSigma(std::vector<SetPoint> points, double reading) {
   std::ranges::sort(points, {}, &SetPoint::reading_celsius);
   const auto above = std::ranges::lower_bound(points, reading, {}, &SetPoint::reading_celsius);

@@ -25,7 +25,7 @@ struct InfluenceReport {
   /// Root mean square of how far the black body reads from the others' mean of its setting, as
   /// measured and corrected, each view by what the others tell. Kelvin.
   double apart_before_k = 0.0, apart_after_k = 0.0;
-  int views = 0;  ///< Those with others of their setting.
+  int views = 0;  ///< Only with others of their setting.
 
   /// Views that were left out read less than half as far apart once they are corrected.
   bool IsKnown() const;

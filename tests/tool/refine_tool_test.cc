@@ -171,6 +171,7 @@ TEST_F(RefineToolTest, CheckFindsLittleAndIsNotAlarmedByGaps) {
   const Outcome check = Run("calibrate check scan.mcap --rig moved.textproto");
   EXPECT_EQ(check.status, 1) << check.err;
   EXPECT_THAT(check.out, AllOf(HasSubstr("pose      moved by"), HasSubstr("delay     moved by"),
+                               HasSubstr("depth     ok, the same surface looks the same"),
                                HasSubstr("calibrate refine scan.mcap")));
 }
 
