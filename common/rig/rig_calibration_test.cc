@@ -122,8 +122,7 @@ thermal_sensor { radiometric_correction { reading_celsius: [20, 100] correction_
   EXPECT_EQ(again->thermal_sensor.housing_drift->error_per_kelvin, 4.0);
   EXPECT_EQ(again->thermal_sensor.housing_drift->sigma, 0.3);
   for (const char* wrong : {"sigma: -1", ""}) {
-    EXPECT_THAT(RigError(ReplaceFirst(text, "sigma: 0.3", wrong)),
-                HasSubstr("housing_drift"));
+    EXPECT_THAT(RigError(ReplaceFirst(text, "sigma: 0.3", wrong)), HasSubstr("housing_drift"));
   }
   EXPECT_THAT(RigError(ReplaceFirst(text, "0.2]", "0.2, 1.0]")),
               AllOf(HasSubstr("rig.textproto"), HasSubstr("radiometric_correction")));
