@@ -37,8 +37,9 @@ bool TakeOutPose(FrameCells& cells) {
   Eigen::VectorXd errors(seen);
   Eigen::Index row = 0;
   const auto place = [](std::size_t cell) {
-    return Eigen::RowVector3d(1.0, static_cast<double>(cell % DepthConsistency::kColumns),
-                              static_cast<double>(cell / DepthConsistency::kColumns));
+    const std::size_t column = cell % DepthConsistency::kColumns;
+    const std::size_t line = cell / DepthConsistency::kColumns;
+    return Eigen::RowVector3d(1.0, static_cast<double>(column), static_cast<double>(line));
   };
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i].pixels == 0) continue;

@@ -25,19 +25,22 @@ Image<float> Disc(double radius, double disc_celsius, double plate_celsius) {
   return image;
 }
 
+double FromMiddle(std::uint32_t pixel) {
+  const std::uint32_t row = pixel / kWidth, column = pixel % kWidth;
+  return std::hypot(column - kX, row - kY);
+}
+
 double FarthestFromMiddle(const std::vector<PixelPatch>& patches) {
   double farthest = 0.0;
   for (const PixelPatch& patch : patches)
-    for (const std::uint32_t pixel : patch)
-      farthest = std::max(farthest, std::hypot(pixel % kWidth - kX, pixel / kWidth - kY));
+    for (const std::uint32_t pixel : patch) farthest = std::max(farthest, FromMiddle(pixel));
   return farthest;
 }
 
 double NearestToMiddle(const std::vector<PixelPatch>& patches) {
   double nearest = 1e9;
   for (const PixelPatch& patch : patches)
-    for (const std::uint32_t pixel : patch)
-      nearest = std::min(nearest, std::hypot(pixel % kWidth - kX, pixel / kWidth - kY));
+    for (const std::uint32_t pixel : patch) nearest = std::min(nearest, FromMiddle(pixel));
   return nearest;
 }
 

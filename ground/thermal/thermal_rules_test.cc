@@ -119,9 +119,9 @@ TEST_F(ThermalRulesTest, EachTemperatureKnowsItsDistanceAngleAndNuc) {
   capture.nuc = {7, 12.4};
   FuseFrame(options_, Even(20.0), capture);
   int checked = 0;
-  for (double x = 0.3; x < 0.56; x += 0.02) {
-    for (double y = 0.1; y < 0.5; y += 0.02) {
-      const Eigen::Vector3d p(x, y, 0.60);
+  for (int column = 0; column < 13; ++column) {
+    for (int row = 0; row < 20; ++row) {
+      const Eigen::Vector3d p(0.3 + 0.02 * column, 0.1 + 0.02 * row, 0.60);
       const PointMeasurement at = MeasurementAt(*tsdf_, *thermal_, p);
       if (!at.voxel.measured() || at.conditions.empty()) continue;
       ++checked;

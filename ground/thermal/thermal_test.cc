@@ -15,7 +15,8 @@ using testing::ThermalCameraModel;
 using ThermalFuserTest = testing::BallAndWallTest;
 
 TEST(ThermalVoxelTest, KeepsTemperatureToHalfAStepAndBothClasses) {
-  for (float celsius = -100.0F; celsius < 1500.0F; celsius += 7.3F) {
+  for (int i = 0; i < 219; ++i) {
+    const float celsius = -100.0F + 7.3F * static_cast<float>(i);
     const ThermalVoxel voxel = ThermalVoxel::Make(celsius, kAcceptable, kGood);
     ASSERT_TRUE(voxel.measured());
     ASSERT_NEAR(voxel.celsius(), celsius, 0.5F * ThermalVoxel::kStep_k + 1e-4F);
@@ -50,7 +51,10 @@ TEST(ThermalVoxelTest, HoldsTemperaturesOfTheWholeRangeWithin50Millikelvin) {
   for (const double max_celsius : {382.0, 900.0, 1500.0}) {
     const RadiometricScale scale = ScaleForRange(-40.0, max_celsius).value();
     double largest_k = 0.0;
-    for (double celsius = -40.0; celsius <= max_celsius; celsius += 0.0071) {
+    constexpr double kStep_k = 0.0071;
+    const int steps = static_cast<int>((max_celsius + 40.0) / kStep_k);
+    for (int i = 0; i <= steps; ++i) {
+      const double celsius = -40.0 + kStep_k * i;
       const float measured = scale.Celsius(scale.CountOf(celsius));
       const ThermalVoxel voxel = ThermalVoxel::Make(measured, kGood, kGood);
       largest_k = std::max(largest_k, std::abs(static_cast<double>(voxel.celsius()) - celsius));
@@ -89,17 +93,11 @@ TEST(ReplacesMeasurementTest, FollowsAlgorithm6ForAllClassPairs) {
                              ConditionClass old_a) {
     const bool old_valid = old_d != kBad && old_a != kBad;
     const bool valid = d != kBad && a != kBad;
-    bool better = true;
-    if (!valid) {
-      better = false;
-    } else if (d < old_d) {
-      better = true;
-    } else if (d > old_d) {
-      better = false;
-    } else if (a < old_a) {
-      better = true;
-    } else if (a > old_a) {
-      better = false;
+    bool better = valid;
+    if (valid && d != old_d) {
+      better = d < old_d;
+    } else if (valid && a != old_a) {
+      better = a < old_a;
     }
     return !old_valid || better;
   };

@@ -19,11 +19,13 @@ constexpr double kResolution_k = 0.0125 / 1.7320508075688772;
 TEST(SigmaCodeTest, IsWithinThreePercentAndInTheOrderOfTheValues) {
   constexpr float kHalfStep = 0.5F / 16.0F;
   std::uint8_t last = 0;
-  for (float sigma_k = SigmaCode::kMin_k; sigma_k < SigmaCode::kMax_k; sigma_k *= 1.01F) {
+  float sigma_k = SigmaCode::kMin_k;
+  while (sigma_k < SigmaCode::kMax_k) {
     const std::uint8_t code = SigmaCode::Of(sigma_k);
     ASSERT_GE(code, std::max<std::uint8_t>(last, 1));
     ASSERT_NEAR(SigmaCode::Kelvin(code), sigma_k, kHalfStep * sigma_k);
     last = code;
+    sigma_k *= 1.01F;
   }
   for (int code = 1; code <= 255; ++code) {
     const auto byte = static_cast<std::uint8_t>(code);
@@ -77,8 +79,10 @@ TEST(UncertaintyBudgetTest, BetweenHotAndHotterASlopeOfNothingIsNotCertain) {
   const double sigma_px = std::sqrt(0.3 * 0.3 + 2.0 / 12.0);
   double sum = 0.0, weights = 0.0;
   constexpr double kStep = 0.05;
-  for (double u = -8.0; u <= 8.0; u += kStep) {
-    for (double v = -8.0; v <= 8.0; v += kStep) {
+  constexpr int kSteps = 160;  // Eight standard deviations to either side.
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    for (int j = -kSteps; j <= kSteps; ++j) {
+      const double u = kStep * i, v = kStep * j;
       const double weight = std::exp(-0.5 * (u * u + v * v));
       const double off_k =
           0.5 * sigma_px * sigma_px * (curvature.x() * u * u + curvature.y() * v * v);

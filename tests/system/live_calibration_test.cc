@@ -31,10 +31,10 @@ constexpr auto kFrame = std::chrono::milliseconds(50), kPause = std::chrono::mil
 /// The image as a camera shows it, with noise of 0.03 K. Between 20 and 60 °C, whatever its units.
 Image<std::uint16_t> Show(const Image<float>& image, std::mt19937& engine) {
   std::normal_distribution<float> noise(0.0F, 3.0F);
-  const auto [low, high] = std::ranges::minmax(image.pixels());
+  const auto range = std::ranges::minmax(image.pixels());
   Image<std::uint16_t> counts(image.width(), image.height());
   std::ranges::transform(image.pixels(), counts.pixels().begin(), [&](float value) {
-    const float part = (value - low) / (high - low);
+    const float part = (value - range.min) / (range.max - range.min);
     return static_cast<std::uint16_t>(std::lround(29'315.0F + 4'000.0F * part + noise(engine)));
   });
   return counts;
