@@ -162,16 +162,6 @@ TEST_F(ThermalRulesTest, OfTemperaturesUnderEqualClassesThatAgreeTheLeastUncerta
   EXPECT_NEAR(at_wall().sigma_k, std::hypot(CameraUncertainty().netd_k, 0.0072), 0.002);
 }
 
-TEST_F(ThermalRulesTest, AHousingThatDriftsAndReadingsThatAreWrongAreCorrected) {
-  sensor_.housing_drift = HousingDrift{4.0, 0.1};
-  sensor_.radiometric_correction = {{0.0F, 100.0F}, {1.0F, 3.0F}, {0.2F, 0.2F}};
-  CaptureConditions capture;
-  capture.nuc = {.epoch = 0, .seconds_since = 1.0, .housing_change_k = 0.5};
-  FuseFrame(options_, Even(52.0), capture);
-  const PointMeasurement at_wall = MeasurementAt(*tsdf_, *thermal_, {0.44, 0.36, 0.60});
-  EXPECT_NEAR(at_wall.voxel.celsius(), 52.0 - 4.0 * 0.5 + 2.0, 0.02);
-}
-
 TEST_F(ThermalRulesTest, WithTheLowestKeptTheUncertaintyDoesNotDecide) {
   options_.mutable_expert()->set_policy(LOWEST_GOOD);
   options_.mutable_distance()->set_good_m(0.8);

@@ -268,5 +268,17 @@ TEST_F(ThermalFuserTest, APoseThatIsNoneIsTheCallersFault) {
   }
 }
 
+TEST_F(ThermalFuserTest, AHousingThatDriftsAndReadingsThatAreWrongAreCorrected) {
+  sensor_.housing_drift = HousingDrift{4.0, 0.1};
+  sensor_.radiometric_correction = {{0.0F, 100.0F}, {1.0F, 3.0F}, {0.2F, 0.2F}};
+  CaptureConditions capture;
+  capture.nuc = {.epoch = 0, .seconds_since = 1.0, .housing_change_k = 0.5};
+  ThermalFrame frame = TakeFrame(T_map_thermal_);
+  frame.temperature_raw.Fill(32'515);  // 52 °C.
+  FuseFrame(ThermalOptions(), frame, capture);
+  const PointMeasurement at_wall = MeasurementAt(*tsdf_, *thermal_, {0.44, 0.36, 0.60});
+  EXPECT_NEAR(at_wall.voxel.celsius(), 52.0 - 4.0 * 0.5 + 2.0, 0.02);
+}
+
 }  // namespace
 }  // namespace isotherm
