@@ -25,6 +25,15 @@ RigDescription SomeRig() {
   return description;
 }
 
+/// Returns whether the ground refuses a rig once `change` was made to what is sent.
+bool IsRefused(const RigDescription& sent, const auto& change) {
+  isotherm_wire_Rig wire{};
+  ToWire(sent, &wire);
+  change(wire);
+  RigDescription received;
+  return FromWire(wire, &received).has_value();
+}
+
 TEST(ConvertRigTest, SensorsArriveAsTheyWereWritten) {
   isotherm_wire_Rig wire{};
   ToWire(SomeRig(), &wire);
@@ -103,13 +112,7 @@ TEST(ConvertRigTest, AnEdgeThatSendsNoneKnowsOfNoDepthBias) {
 TEST(ConvertRigTest, ADepthBiasThatCannotBeIsRefused) {
   RigDescription sent = SomeRig();
   sent.rig.depth_sensor.bias = {2, 2, {0.5F}, {1.0F, 1.1F, 1.2F, 1.0F}};
-  const auto refuses = [&](const auto& change) {
-    isotherm_wire_Rig wire{};
-    ToWire(sent, &wire);
-    change(wire);
-    RigDescription received;
-    return FromWire(wire, &received).has_value();
-  };
+  const auto refuses = [&](const auto& change) { return IsRefused(sent, change); };
   EXPECT_FALSE(refuses([](isotherm_wire_Rig&) {}));
   EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_multipliers = {}; }));
   EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.depth_bias_multipliers._length = 3; }));
@@ -163,13 +166,7 @@ TEST(ConvertRigTest, AnEdgeThatSendsNoneKnowsOfNoHousingDrift) {
 TEST(ConvertRigTest, ARadiometricCorrectionThatCannotBeIsRefused) {
   RigDescription sent = SomeRig();
   sent.rig.thermal_sensor.radiometric_correction = {{20.0F, 120.0F}, {0.5F, -1.2F}, {0.1F, 0.2F}};
-  const auto refuses = [&](const auto& change) {
-    isotherm_wire_Rig wire{};
-    ToWire(sent, &wire);
-    change(wire);
-    RigDescription received;
-    return FromWire(wire, &received).has_value();
-  };
+  const auto refuses = [&](const auto& change) { return IsRefused(sent, change); };
   EXPECT_FALSE(refuses([](isotherm_wire_Rig&) {}));
   // The sample ends within it.
   EXPECT_TRUE(refuses([](isotherm_wire_Rig& rig) { rig.radiometric_sigmas_k = {}; }));

@@ -50,7 +50,7 @@ half an hour, with a NUC every few minutes.
 Without --apply or --output nothing is written. What was found replaces the calibration's
 thermal_sensor.radiometric_correction, scene_influence and housing_drift, and only what was found; comments of
 the file are lost, and as it was it is kept beside it (FILE.bak). The ground corrects each thermal image by it
-before anything else; recordings stay as measured.
+before it is fused; recordings stay as measured.
 
 Examples:
   isotherm calibrate radiometric black-body.csv --rig rig.textproto

@@ -97,7 +97,7 @@ Polynomial Fit(const std::vector<SetPoint>& points, const Scale& scale, int degr
   const bool is_stated =
       std::ranges::any_of(points, [](const SetPoint& point) { return point.own_sigma_k > 0.0; });
   // Where nobody states an uncertainty, what they stray by is all that is known.
-  const double unstated = std::pow(fit.stray_k / kMinSigma_k, 2) * (freedom > 0 ? 1.0 : 0.0);
+  const double unstated = std::pow(fit.stray_k / kMinSigma_k, 2);
   fit.covariance = (is_stated ? excess : unstated) * inverse;
   return fit;
 }
