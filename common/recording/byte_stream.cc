@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -122,7 +123,12 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
   const int flags = O_WRONLY | O_CLOEXEC | (device ? 0 : O_CREAT | O_EXCL);
   FileDescriptor fd(::open(path.c_str(), flags, 0644));
   if (fd.get() < 0) return Err(FromErrno(errno, "create", path));
-  if (!device) SyncFolder(directory);
+  if (!device) {
+    // Says, as long as this process lives, that the file is being written (IsBeingWritten). A file
+    // system that has no locks goes without.
+    static_cast<void>(::flock(fd.get(), LOCK_EX | LOCK_NB));
+    SyncFolder(directory);
+  }
   return std::make_unique<FileSink>(std::move(fd), path);
 }
 

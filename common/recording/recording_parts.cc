@@ -1,7 +1,11 @@
 #include "common/recording/recording_parts.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <system_error>
 
 namespace isotherm {
@@ -24,6 +28,14 @@ bool IsDevice(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
+}
+
+bool IsBeingWritten(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return false;
+  const bool is_locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return is_locked;
 }
 
 bool EndsFile(const Status& status) {

@@ -16,6 +16,10 @@ int NextFreePart(const std::filesystem::path& path, int part);
 /// Returns whether `path` is written to as it is: a device or a pipe has no parts.
 bool IsDevice(const std::filesystem::path& path);
 
+/// Returns whether a process that lives writes this recording. Says no where the file system has no
+/// locks.
+bool IsBeingWritten(const std::filesystem::path& path);
+
 /// Returns whether the file cannot go on after a writer's `status`: the disk failed. Otherwise one
 /// message was wrong, and the next may be right.
 bool EndsFile(const Status& status);

@@ -92,7 +92,8 @@ class Scan {
         is_recorded_(spool != nullptr),
         pipeline_(parts.options,
                   {parts.source, parts.publisher, parts.counters, parts.health, parts.clock,
-                   std::move(spool), parts.session.session(), parts.session.rig_thermal_delay_s}) {}
+                   std::move(spool), parts.session.session(), parts.session.first_numbers,
+                   parts.session.rig_thermal_delay_s}) {}
 
   CaptureEnd Run();
 

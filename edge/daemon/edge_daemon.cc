@@ -20,6 +20,7 @@
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
 #include "edge/daemon/open_source.h"
+#include "edge/daemon/resume_scan.h"
 #include "edge/daemon/session_start.h"
 #include "edge/daemon/stop_limits.h"
 #include "edge/options/edge_options.pb.h"
@@ -96,16 +97,18 @@ void LogClock(const EdgeOptions& options, const KernelClock& clock) {
 /// Null if nothing is to be recorded. Without a disk it waits for one, unless somebody waits for
 /// the end of the source: then that is an error.
 Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const EdgeSession& start,
+                                         const std::optional<InterruptedScan>& before,
                                          const Clock& clock, FrameCounters& counters) {
   const std::optional<std::filesystem::path> path =
-      RecordingPath(options.spool().record(), start.time, start.session());
+      before ? before->path : RecordingPath(options.spool().record(), start.time, start.session());
   if (!path) return nullptr;
-  const auto files = std::make_shared<RecordingFiles>(
-      RecordingDescription{*path, FromSeconds(options.spool().expert().flush_interval_s()),
-                           start.rig, RecordingMetadata(options, start)});
+  const auto files = std::make_shared<RecordingFiles>(RecordingDescription{
+      *path, FromSeconds(options.spool().expert().flush_interval_s()), start.rig,
+      RecordingMetadata(options, start), before ? before->parts : 0});
   auto spool = std::make_unique<Spool>(SpoolParts{
       [files] { return files->Next(); }, [path] { return FreeDiskBytes(*path); }, options.spool(),
-      clock, counters, [files](const RigUpdate& update) { files->Update(update); }});
+      clock, counters, [files](const RigUpdate& update) { files->Update(update); },
+      before ? &*before : nullptr});
   if (options.exit_at_end()) {
     if (Status begun = spool->Begin(); !begun.ok()) return Err(begun);
   }
@@ -170,20 +173,31 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   const std::optional<Rig> rig = calibration ? calibration : (*source)->rig();
   LogRig(rig);
   LogCounts((*source)->cameras());
-  const EdgeSession session{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
-                            rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
+  EdgeSession session{.time = clock.Now(),
+                      .cameras = (*source)->cameras(),
+                      .rig = AsPublished(rig, **source),
+                      .rig_thermal_delay_s = rig ? rig->thermal_delay_s : 0.0,
+                      .clock = ReadKernelClock()};
   LogClock(options, session.clock);
+  // Only a process's first scan can be one that another process has begun.
+  std::optional<InterruptedScan> before;
+  if (!link.publisher) before = FindScanToResume(options, session);
+  if (before) {
+    Resume(*before, session);
+    CountBefore(*before, session, counters);
+  }
 
   if (!link.publisher) {
     const Status connected = Connect(options, environment, clock, link);
     if (!connected.ok()) return {.status = Fail(connected)};
   }
-  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, session, clock, counters);
+  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, session, before, clock, counters);
   if (!spool) {
     LOG(Edge, Error) << spool.error().message();
     return {.status = kExitRecording};
   }
-  const Status begun = link.publisher->BeginSession(DescribeRig(options, session));
+  const Status begun = link.publisher->BeginSession(
+      DescribeRig(options, session), before ? PublishedBy(*before, session) : SessionBefore());
   if (!begun.ok()) return {.status = Fail(begun)};
   return Capture(
       {options, session, **source, counters, health, *link.publisher, leaving, clock, stop},

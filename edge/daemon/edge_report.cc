@@ -98,12 +98,14 @@ double RateMeter::Update(std::uint64_t count, SteadyTime now) {
 
 StreamStatus ToStreamStatus(const SensorCounters& counters, double rate_hz) {
   StreamStatus status;
-  status.captured = counters.captured;
+  // So that it is published and dropped together.
+  status.captured = counters.captured + counters.lost_by_restart;
   status.published = counters.published;
   status.rate_hz = rate_hz;
   status.queue_frames = static_cast<std::uint32_t>(counters.OnTheWayToGround());
   status.dropped = {{"rejected", counters.rejected},
                     {"no free slot in the camera's process", counters.left_out},
+                    {"lost by a restart", counters.lost_by_restart},
                     {"queue full", counters.publish_queue_full},
                     {"publish failed", counters.publish_failed}};
   return status;
@@ -241,6 +243,12 @@ std::string Summary(const FrameCounters& counters, bool recording,
     if (counts.lost_in_camera > 0) {
       text +=
           fmt::format("{}  lost in the camera or its library {}\n", name, counts.lost_in_camera);
+    }
+    if (counts.lost_by_restart > 0) {
+      text += fmt::format(
+          "{}  numbers left out while the edge was started again {}: not captured, or not recorded "
+          "just before\n",
+          name, counts.lost_by_restart);
     }
     if (receipt) {
       text +=

@@ -12,6 +12,7 @@
 #include "common/recording/clock_record.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/options/edge_options.pb.h"
+#include "edge/spool/interrupted_scan.h"
 #include "edge/timestamper/time_base.h"
 
 namespace isotherm {
@@ -96,6 +97,7 @@ RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
   const TimestamperOptions& timing = options.timestamper();
   RecordingDescription::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},
+      {std::string(kScanMetadata), ScanMetadata(options.link().edge_id(), start.session())},
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
       {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
       {"timing",

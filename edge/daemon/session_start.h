@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -29,10 +30,14 @@ struct EdgeSession {
   std::vector<CameraDescription> cameras;
   std::optional<Rig> rig;            ///< As published and recorded.
   double rig_thermal_delay_s = 0.0;  ///< As calibrated.
-  KernelClock clock;
+  KernelClock clock{};
+  std::uint64_t resumed_session = 0;  ///< That of a process before, which goes on; 0: a new one.
+  std::array<std::uint64_t, 2> first_numbers{};  ///< Of the frames to come, by Sensor.
 
   /// One per start of a scan.
-  std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
+  std::uint64_t session() const {
+    return resumed_session != 0 ? resumed_session : static_cast<std::uint64_t>(ToNanoseconds(time));
+  }
 };
 
 /// Returns what the link says of the session.

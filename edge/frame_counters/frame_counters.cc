@@ -42,6 +42,7 @@ SensorCounters FrameCounters::Get(Sensor sensor) const {
   counters.rejected = count(FrameFate::kRejected);
   counters.left_out = count(FrameFate::kLeftOut);
   counters.lost_in_camera = count(FrameFate::kLostInCamera);
+  counters.lost_by_restart = count(FrameFate::kLostByRestart);
   counters.captured = count(FrameFate::kCaptured);
   return counters;
 }

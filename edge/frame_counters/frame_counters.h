@@ -15,6 +15,9 @@ enum class FrameFate : std::uint8_t {
   kRejected,      ///< Garbage, short, wrong size.
   kLeftOut,       ///< Its camera's process had no free slot: the edge did not take frames in time.
   kLostInCamera,  ///< Not captured: the camera counted it, and it never came.
+  /// Not captured, as the edge was started again meanwhile; or so shortly before that nothing has
+  /// it.
+  kLostByRestart,
   kRecorded,
   kRecordQueueFull,  ///< The disk was slower than the cameras.
   kRecordFailed,     ///< The disk refused it (full, broken).
@@ -29,7 +32,8 @@ struct SensorCounters {
   std::uint64_t captured = 0;
   std::uint64_t rejected = 0;
   std::uint64_t left_out = 0;
-  std::uint64_t lost_in_camera = 0;  ///< Not in `captured`.
+  std::uint64_t lost_in_camera = 0;   ///< Not in `captured`.
+  std::uint64_t lost_by_restart = 0;  ///< Not in `captured`; at most.
   std::uint64_t recorded = 0;
   std::uint64_t record_queue_full = 0;
   std::uint64_t record_failed = 0;

@@ -54,6 +54,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       clock_(parts.clock),
       spool_(std::move(parts.spool)),
       session_(parts.session),
+      first_numbers_(parts.first_numbers),
       thermal_is_counts_(SendsCounts(parts.source)),
       step_watch_(ReadClocks(clock_)),
       depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
@@ -293,7 +294,8 @@ void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
 }
 
 FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const {
-  return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
+  const std::uint64_t first = first_numbers_[static_cast<std::size_t>(raw.sensor)];
+  return {session_, first + raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
 }
 
 void EdgePipeline::QueueForCodec(FrameToEncode frame, const std::stop_token& stop) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -43,6 +44,8 @@ struct EdgeParts {
   const Clock& clock;
   std::unique_ptr<Spool> spool;  ///< Null: no recording.
   std::uint64_t session = 0;
+  /// The numbers of the first frames, by Sensor: higher for a session that goes on.
+  std::array<std::uint64_t, 2> first_numbers{};
   double rig_thermal_delay_s = 0.0;
 };
 
@@ -151,6 +154,7 @@ class EdgePipeline {
   const Clock& clock_;
   const std::unique_ptr<Spool> spool_;
   const std::uint64_t session_;
+  const std::array<std::uint64_t, 2> first_numbers_;
   const bool thermal_is_counts_;  ///< The camera measures no temperatures.
 
   StepWatch step_watch_;  ///< Used by the capture thread only.

@@ -148,12 +148,12 @@ bool DdsPublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
   return true;
 }
 
-Status DdsPublisher::BeginSession(const RigDescription& rig) {
+Status DdsPublisher::BeginSession(const RigDescription& rig, const SessionBefore& before) {
   {
     MutexLock lock(mutex_);
     session_ = rig.session;
-    depth_.BeginSession();
-    thermal_.BeginSession();
+    depth_.BeginSession(before.depth);
+    thermal_.BeginSession(before.thermal);
     flow_waits_ = flow_timeouts_ = 0;
     receipt_at_.reset();
   }

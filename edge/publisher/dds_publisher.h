@@ -39,7 +39,7 @@ class DdsPublisher final : public Publisher {
 
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override;
   bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
-  Status BeginSession(const RigDescription& rig) override;
+  Status BeginSession(const RigDescription& rig, const SessionBefore& before) override;
   Status Announce(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.depth, &depth_, stop);

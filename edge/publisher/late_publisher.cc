@@ -33,7 +33,7 @@ void LatePublisher::Run(std::stop_token stop, const PublisherHandlers& handlers)
     // BeginSession in between would otherwise be lost or overtaken.
     if (policy_) owned_->SetPolicy(*policy_);
     if (rig_) {
-      if (const Status begun = owned_->BeginSession(*rig_); !begun.ok()) {
+      if (const Status begun = owned_->BeginSession(*rig_, before_); !begun.ok()) {
         LOG(Publisher, Warning) << "the session is not announced: " << begun.message();
       }
     }
@@ -52,10 +52,11 @@ bool LatePublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
   return link()->WaitForGround(timeout, std::move(stop));
 }
 
-Status LatePublisher::BeginSession(const RigDescription& rig) {
+Status LatePublisher::BeginSession(const RigDescription& rig, const SessionBefore& before) {
   MutexLock lock(mutex_);
   rig_ = rig;
-  return link() != nullptr ? link()->BeginSession(rig) : OkStatus();
+  before_ = before;
+  return link() != nullptr ? link()->BeginSession(rig, before) : OkStatus();
 }
 
 Status LatePublisher::Announce(const RigDescription& rig) {

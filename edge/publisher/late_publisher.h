@@ -27,7 +27,7 @@ class LatePublisher final : public Publisher {
   /// Connects first.
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override;
   bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
-  Status BeginSession(const RigDescription& rig) override;
+  Status BeginSession(const RigDescription& rig, const SessionBefore& before) override;
   Status Announce(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override;
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override;
@@ -50,6 +50,7 @@ class LatePublisher final : public Publisher {
   std::condition_variable_any changed_;
   std::unique_ptr<Publisher> owned_ GUARDED_BY(mutex_);
   std::optional<RigDescription> rig_ GUARDED_BY(mutex_);
+  SessionBefore before_ GUARDED_BY(mutex_);
   std::optional<PublishPolicy> policy_ GUARDED_BY(mutex_);
   std::string problem_ GUARDED_BY(mutex_);
   std::atomic<Publisher*> link_{nullptr};

@@ -50,7 +50,7 @@ TEST_F(LatePublisherTest, F31WithoutANetworkFramesAreRefusedAndTheReasonIsKnown)
 }
 
 TEST_F(LatePublisherTest, F31WhenTheNetworkIsThereFramesFlowWithTheChosenPolicy) {
-  ASSERT_TRUE(late_.BeginSession({}).ok());
+  ASSERT_TRUE(late_.BeginSession({}, {}).ok());
   late_.SetPolicy(PublishPolicy::kLive);
   Run();
   is_there_ = true;
@@ -64,7 +64,7 @@ TEST_F(LatePublisherTest, F31WhenTheNetworkIsThereFramesFlowWithTheChosenPolicy)
 
 TEST_F(LatePublisherTest, WhatWasAnnouncedWithoutANetworkIsTheSessionsRigOnceItIsThere) {
   RigDescription rig;
-  ASSERT_TRUE(late_.BeginSession(rig).ok());
+  ASSERT_TRUE(late_.BeginSession(rig, {}).ok());
   rig.thermal.serial = "before";
   ASSERT_TRUE(late_.Announce(rig).ok());
   Run();

@@ -19,11 +19,12 @@ class OutgoingStream {
   OutgoingStream(std::size_t flow_window_frames, Nanoseconds flow_timeout)
       : window_(flow_window_frames, flow_timeout) {}
 
-  void BeginSession() {
-    counts_ = {};
+  void BeginSession(const PublishedBefore& before) {
+    counts_ = {.published = before.frames, .next_frame_number = before.next_frame_number};
+    published_before_ = before.next_frame_number;
     published_ = FrameNumberSet(kMaxGaps);
     window_.BeginSession();
-    sent_.BeginSession();
+    sent_.BeginSession(before.number_limit);
   }
   /// Enters that a frame was written. It must have been entered into sent() before the write.
   void OnPublished(std::uint64_t number) {
@@ -35,7 +36,7 @@ class OutgoingStream {
   void OnFailed() { ++counts_.failed; }
   /// Enters that a frame was sent from the recording. Returns whether it was the first time.
   bool OnBackfilled(std::uint64_t number) {
-    if (!published_.Add(number)) return false;
+    if (number < published_before_ || !published_.Add(number)) return false;
     ++counts_.published;
     counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
     return true;
@@ -63,6 +64,7 @@ class OutgoingStream {
   static constexpr std::size_t kMaxGaps = 4096;
 
   StreamPublished counts_;
+  std::uint64_t published_before_ = 0;  ///< Numbers below are those of another process.
   FrameNumberSet published_{kMaxGaps};
   FlowWindow window_;
   PublishedStream sent_;

@@ -52,7 +52,7 @@ TEST_F(OutgoingStreamTest, AFrameFromTheRecordingCountsOnceAndMayBeReceivedAgain
   EXPECT_EQ(stream_.counts().next_frame_number, 4U);
   EXPECT_EQ(Check(4, 3), std::nullopt);
   EXPECT_EQ(Check(5, 3), RefusalCause::kImpossibleNumber) << "nobody sent it";
-  stream_.BeginSession();
+  stream_.BeginSession({});
   stream_.sent().NoteAgain(3);
   EXPECT_TRUE(stream_.OnBackfilled(3));
   EXPECT_EQ(Check(4, 1), std::nullopt) << "nothing else was published: the network came late";
@@ -63,12 +63,25 @@ TEST_F(OutgoingStreamTest, ANewSessionKnowsNothingOfTheOneBefore) {
   stream_.OnFailed();
   ASSERT_FALSE(stream_.window().HasRoom());
   ASSERT_EQ(Check(3, 3), std::nullopt);
-  stream_.BeginSession();
+  stream_.BeginSession({});
   EXPECT_EQ(stream_.counts().published, 0U);
   EXPECT_EQ(stream_.counts().failed, 0U);
   EXPECT_EQ(stream_.counts().next_frame_number, 0U);
   EXPECT_TRUE(stream_.window().HasRoom());
   EXPECT_EQ(Check(3, 3), RefusalCause::kImpossibleNumber);
+}
+
+TEST_F(OutgoingStreamTest, ASessionThatGoesOnKnowsWhatTheProcessBeforeMayHaveSent) {
+  stream_.BeginSession({.frames = 90, .next_frame_number = 100, .number_limit = 130});
+  EXPECT_EQ(stream_.counts().published, 90U);
+  EXPECT_EQ(stream_.counts().next_frame_number, 100U);
+  EXPECT_EQ(Check(105, 104), std::nullopt) << "some of them were not recorded";
+  EXPECT_EQ(Check(131, 100), RefusalCause::kImpossibleNumber);
+  stream_.sent().NoteAgain(40);
+  EXPECT_FALSE(stream_.OnBackfilled(40)) << "it counts as published already";
+  Publish(130);
+  EXPECT_EQ(stream_.counts().published, 91U);
+  EXPECT_EQ(Check(131, 105), std::nullopt);
 }
 
 TEST_F(OutgoingStreamTest, AReaderIsNewForHalfASecond) {

@@ -15,7 +15,11 @@ namespace isotherm {
 /// it. Pure. Thread-compatible.
 class PublishedStream {
  public:
-  void BeginSession() { *this = {}; }
+  /// Of the numbers below `number_limit` another process may have published each.
+  void BeginSession(std::uint64_t number_limit) {
+    *this = {};
+    next_ = count_ = number_limit;
+  }
 
   /// To be called before the frame is written: the ground may answer before writing returns.
   void Note(std::uint64_t frame_number, CaptureTime capture_time) {

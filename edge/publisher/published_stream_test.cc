@@ -50,7 +50,7 @@ TEST_F(PublishedStreamTest, F60FeedbackOnAFrameOfLongAgoIsRefused) {
 }
 
 TEST_F(PublishedStreamTest, ANewSessionStartsFromNothing) {
-  stream_.BeginSession();
+  stream_.BeginSession(0);
   EXPECT_EQ(CheckReceipt(1, 0), RefusalCause::kImpossibleNumber);
   EXPECT_EQ(stream_.Check(About(2)), RefusalCause::kImpossibleNumber);
 }

@@ -30,6 +30,19 @@ struct StreamPublished {
   std::uint64_t next_frame_number = 0;  ///< One above the highest published.
 };
 
+/// Counts what a process before has published of a stream of a session that goes on.
+struct PublishedBefore {
+  std::uint64_t frames = 0;             ///< Those that can be sent again.
+  std::uint64_t next_frame_number = 0;  ///< One above the highest of them.
+  std::uint64_t number_limit = 0;       ///< No number that it may have published is as high.
+};
+
+/// The same for both streams; nothing for a session that begins.
+struct SessionBefore {
+  PublishedBefore depth;
+  PublishedBefore thermal;
+};
+
 /// Counts of the current session.
 struct PublisherStats {
   StreamPublished depth;
@@ -66,7 +79,7 @@ class Publisher {
 
   /// Starts the counts of a session and announces its rig. Frames of other sessions must not
   /// follow.
-  virtual Status BeginSession(const RigDescription& rig) = 0;
+  virtual Status BeginSession(const RigDescription& rig, const SessionBefore& before) = 0;
   /// Announces the rig of the running session again, after more has become known of it.
   virtual Status Announce(const RigDescription& rig) = 0;
   /// Writes a frame. With kLossless it first waits for room in the flow window. Once stop is

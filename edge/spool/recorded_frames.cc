@@ -17,20 +17,20 @@ void RecordedFrames::BeginFile(const std::filesystem::path& file) {
   files_.push_back(file);
 }
 
-void RecordedFrames::Add(Sensor sensor, std::uint64_t number, CaptureTime time) {
+void RecordedFrames::Add(Sensor sensor, const FrameRange& frames, CaptureTime time) {
   MutexLock lock(mutex_);
   if (files_.empty()) return;
   Stream& stream = streams_[static_cast<std::size_t>(sensor)];
   std::vector<FrameRange>& runs = stream.runs;
-  if (!runs.empty() && number <= runs.back().last) return;
-  if (!runs.empty() && number == runs.back().last + 1) {
-    runs.back().last = number;
+  if (!runs.empty() && frames.first <= runs.back().last) return;
+  if (!runs.empty() && frames.first == runs.back().last + 1) {
+    runs.back().last = frames.last;
   } else {
     // The oldest are what the ground is least likely to wait for.
     if (runs.size() >= kMaxRuns) runs.erase(runs.begin(), runs.begin() + kMaxRuns / 2);
-    runs.push_back({number, number});
+    runs.push_back(frames);
   }
-  AddMark({number, time, files_.size() - 1}, stream);
+  AddMark({frames.first, time, files_.size() - 1}, stream);
 }
 
 void RecordedFrames::AddMark(const Mark& mark, Stream& stream) {

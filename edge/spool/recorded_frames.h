@@ -33,7 +33,11 @@ class RecordedFrames {
   /// The frames that follow are in this file.
   void BeginFile(const std::filesystem::path& file);
   /// The recording has this frame. Numbers of one stream rise; one that does not is left out.
-  void Add(Sensor sensor, std::uint64_t number, CaptureTime time);
+  void Add(Sensor sensor, std::uint64_t number, CaptureTime time) {
+    Add(sensor, FrameRange{number, number}, time);
+  }
+  /// The same for frames in a row, of which the first is of `time`.
+  void Add(Sensor sensor, const FrameRange& frames, CaptureTime time);
 
   /// The recording does not have these frames after all: what it has of them cannot be read.
   void Forget(Sensor sensor, const FrameRange& frames);

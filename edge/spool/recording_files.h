@@ -20,6 +20,7 @@ struct RecordingDescription {
   Nanoseconds flush_interval{};
   std::optional<Rig> rig;
   Metadata metadata;
+  int parts = 0;  ///< Files that the recording has already.
 };
 
 /// Begins one file after the other. A name that is taken is left alone: the next number is. A
@@ -27,7 +28,7 @@ struct RecordingDescription {
 class RecordingFiles {
  public:
   explicit RecordingFiles(RecordingDescription description)
-      : description_(std::move(description)) {}
+      : description_(std::move(description)), part_(description_.parts) {}
 
   Result<RecordingFile> Next();
   /// Writes a change of the rig; the files that follow begin with it.

@@ -12,6 +12,7 @@
 #include "common/recording/feedback_record.h"
 #include "common/recording/recording_parts.h"
 #include "edge/options/edge_options.pb.h"
+#include "edge/spool/interrupted_scan.h"
 
 namespace isotherm {
 namespace {
@@ -31,13 +32,28 @@ Status Validate(const SpoolOptions& options) {
   if (options.record().empty()) problems.Add("record", "is empty; name a file or say \"off\"");
   problems.CheckRange("expert.queue_frames", options.expert().queue_frames(), 1, 100'000);
   problems.CheckRange("expert.flush_interval_s", options.expert().flush_interval_s(), 0.05, 1.0);
+  problems.CheckRange("resume_s", options.resume_s(), 0.0, 86'400.0);
   problems.CheckRange("expert.reserve_s", options.expert().reserve_s(), 0.0, 86'400.0);
   problems.CheckRange("expert.reserve_mb", options.expert().reserve_mb(), 0, 1'000'000);
   problems.CheckRange("expert.warn_s", options.expert().warn_s(), 0.0, 86'400.0);
   return problems.ToStatus();
 }
 
-Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options) {}
+Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options) {
+  if (parts_.before != nullptr) TakeOver(*parts_.before);
+}
+
+void Spool::TakeOver(const InterruptedScan& before) {
+  for (std::size_t i = 0; i < before.runs.size(); ++i) {
+    const RecordedRun& run = before.runs[i];
+    if (i == 0 || run.file != before.runs[i - 1].file) recorded_frames_.BeginFile(run.file);
+    recorded_frames_.Add(run.sensor, run.frames, run.time);
+  }
+  closed_.depth_frames = before.Of(Sensor::kDepth).frames;
+  closed_.thermal_frames = before.Of(Sensor::kThermal).frames;
+  offered_ = {closed_.depth_frames, closed_.thermal_frames};
+  UpdateCounters();
+}
 
 Status Spool::Begin() {
   const Status begun = BeginFile();

@@ -24,6 +24,7 @@
 namespace isotherm {
 
 class SpoolOptions;
+struct InterruptedScan;
 
 Status Validate(const SpoolOptions& options);
 
@@ -50,6 +51,9 @@ struct SpoolParts {
   FrameCounters& counters;
   /// Takes what stands at the beginning of the next files from now on. May be empty.
   std::function<void(const RigUpdate&)> update{};
+  /// What the recording has already of a scan that goes on; nullptr: of a new one. Need not outlive
+  /// the construction.
+  const InterruptedScan* before = nullptr;
 };
 
 /// Holds the state of the recording.
@@ -108,6 +112,8 @@ class Spool {
   void NoteShutter(const EncodedThermalFrame& frame);
   /// A step that a dropped frame would have told of is told by the next one.
   Status WriteClockStep(const EncodedFrame& frame);
+  /// Takes over what another process has recorded of the scan.
+  void TakeOver(const InterruptedScan& before);
   /// An error of the disk ends the file.
   void Note(const Status& status);
   /// The file cannot go on, or could not be begun: a new one later.

@@ -87,7 +87,7 @@ class EdgeSide {
   void Begin() {
     RigDescription rig;
     rig.session = plan_.session;
-    CHECK(publisher_->BeginSession(rig).ok());
+    CHECK(publisher_->BeginSession(rig, {}).ok());
     EdgeStatus status;
     status.scan_state = ScanState::kScanning;
     CHECK(publisher_->Publish(status).ok());

@@ -330,7 +330,7 @@ TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
   const auto publisher = std::move(*Publisher::Create(*participant, clock_, options));
   RigDescription rig;
   rig.session = 5;
-  ASSERT_TRUE(publisher->BeginSession(rig).ok());
+  ASSERT_TRUE(publisher->BeginSession(rig, {}).ok());
   LatestValue<Feedback> newest;
   std::jthread receiver([&](const std::stop_token& stop) {
     PublisherHandlers handlers;

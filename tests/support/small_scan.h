@@ -5,7 +5,10 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <sstream>
+#include <string>
 
 #include "common/codec/codec.h"
 #include "common/recording/recording.h"
@@ -47,6 +50,19 @@ inline void WriteSmallScan(const std::filesystem::path& path, int scale = 1) {
     ASSERT_TRUE((*writer)->Write(thermal, std::nullopt).ok());
   }
   ASSERT_TRUE((*writer)->Close().ok());
+}
+
+/// Writes the rig file of those cameras.
+inline void WriteSmallRig(const std::filesystem::path& path, int scale = 1) {
+  const auto camera = [scale](int width, int height, int focal_length_px) {
+    std::ostringstream text;
+    text << "{ width: " << scale * width << " height: " << scale * height
+         << " fx: " << scale * focal_length_px << " fy: " << scale * focal_length_px
+         << " cx: " << (scale * width - 1) / 2.0 << " cy: " << (scale * height - 1) / 2.0 << " }\n";
+    return text.str();
+  };
+  std::ofstream(path) << "depth " << camera(64, 48, 60) << "thermal " << camera(38, 28, 40)
+                      << "T_thermal_depth { tx: 0.05 ty: 0 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 }\n";
 }
 
 }  // namespace isotherm

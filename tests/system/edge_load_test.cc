@@ -205,7 +205,7 @@ class EdgeLoadTest : public ::testing::Test {
     publisher_ = std::move(*publisher);
     RigDescription rig;
     rig.session = kSession;
-    ASSERT_TRUE(publisher_->BeginSession(rig).ok());
+    ASSERT_TRUE(publisher_->BeginSession(rig, {}).ok());
   }
 
   /// Frames that the cameras have made, whoever took them.

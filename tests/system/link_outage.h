@@ -79,16 +79,7 @@ class LinkOutageTest : public TwoHostsTest {
   void WriteScan(int scale) const {
     std::filesystem::remove(scan_);
     WriteSmallScan(scan_, scale);
-    const auto camera = [scale](int width, int height, int focal_length_px) {
-      std::ostringstream text;
-      text << "{ width: " << scale * width << " height: " << scale * height
-           << " fx: " << scale * focal_length_px << " fy: " << scale * focal_length_px
-           << " cx: " << (scale * width - 1) / 2.0 << " cy: " << (scale * height - 1) / 2.0
-           << " }\n";
-      return text.str();
-    };
-    std::ofstream(rig_) << "depth " << camera(64, 48, 60) << "thermal " << camera(38, 28, 40)
-                        << "T_thermal_depth { tx: 0.05 ty: 0 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 }\n";
+    WriteSmallRig(rig_, scale);
   }
 
   void StartGround(const std::string& profile) {

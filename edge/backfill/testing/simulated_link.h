@@ -94,7 +94,7 @@ class SimulatedLink final : public Publisher {
   // Not used by backfill.
   void Run(std::stop_token, const PublisherHandlers&) override {}
   bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status BeginSession(const RigDescription&) override { return OkStatus(); }
+  Status BeginSession(const RigDescription&, const SessionBefore&) override { return OkStatus(); }
   Status Announce(const RigDescription&) override { return OkStatus(); }
   Status Publish(const EncodedDepthFrame&, std::stop_token) override { return OkStatus(); }
   Status Publish(const EncodedThermalFrame&, std::stop_token) override { return OkStatus(); }

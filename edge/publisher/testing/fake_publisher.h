@@ -24,7 +24,7 @@ class FakePublisher final : public Publisher {
     changed_.wait(lock, stop, [] { return false; });
   }
   bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status BeginSession(const RigDescription& rig) override {
+  Status BeginSession(const RigDescription& rig, const SessionBefore& /*before*/) override {
     MutexLock lock(mutex_);
     session_rig_ = rig;
     ++sessions_;

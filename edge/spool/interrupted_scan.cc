@@ -1,0 +1,282 @@
+#include "edge/spool/interrupted_scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <regex>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+#include "common/recording/recording.h"
+#include "common/recording/recording_parts.h"
+#include "common/recording/recording_topics.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::array kSensors = {Sensor::kDepth, Sensor::kThermal};
+/// Recordings that are opened in search of the rig's newest. Rigs that share a folder are few.
+constexpr std::size_t kMaxOpened = 16;
+/// The places of frames that are looked up: one per interval, and no more than so many in a file.
+constexpr Nanoseconds kPlaceInterval = 10s;
+constexpr std::int64_t kMaxPlacesInFile = 128;
+/// Items that are read in search of a frame of each camera.
+constexpr int kMaxItemsPerPlace = 512;
+/// More than any camera has; a stream whose rate is not known may have had it.
+constexpr double kMaxRate_hz = 200.0;
+/// The rate at the end is measured over this long at least.
+constexpr Nanoseconds kMinRateTime = 200ms;
+constexpr std::uint64_t kSpareNumbers = 8;
+
+/// A file of the folder, and which part of which recording its name says it is.
+struct Candidate {
+  std::filesystem::path path;
+  std::filesystem::path first;  ///< The recording's first file.
+  int part = 1;
+  std::filesystem::file_time_type written;
+};
+
+/// Returns the candidate that a file name means; nullopt: none. Of a recording with a name of its
+/// own, `stem` is that name; empty: any that RecordingPath makes.
+std::optional<Candidate> Parse(const std::filesystem::path& path, const std::string& stem) {
+  static const std::regex kOwn(R"((edge-\d{8}-\d{6}-[0-9a-f]{8})(?:-(\d{1,6}))?)");
+  static const std::regex kNumbered(R"((.*)-(\d{1,6}))");
+  const std::string name = path.stem().string();
+  std::smatch match;
+  std::string base = name;
+  int part = 1;
+  if (stem.empty()) {
+    if (!std::regex_match(name, match, kOwn)) return std::nullopt;
+  } else if (name != stem && (!std::regex_match(name, match, kNumbered) || match[1] != stem)) {
+    return std::nullopt;
+  }
+  if (!match.empty()) {
+    base = match[1];
+    if (match[2].matched) part = std::stoi(match[2]);
+  }
+  return Candidate{path, path.parent_path() / (base + path.extension().string()), part, {}};
+}
+
+/// Returns the candidates that `record` names, the newest first.
+std::vector<Candidate> CandidatesOf(const std::filesystem::path& record) {
+  std::error_code error;
+  const bool is_file = record.has_filename() && !std::filesystem::is_directory(record, error);
+  std::filesystem::path folder = is_file ? record.parent_path() : record;
+  if (folder.empty()) folder = ".";
+  const std::string stem = is_file ? record.stem().string() : "";
+  const std::string extension = is_file ? record.extension().string() : ".mcap";
+  std::vector<Candidate> found;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->path().extension() != extension || !entry->is_regular_file(ignored)) continue;
+    std::optional<Candidate> candidate = Parse(entry->path(), stem);
+    if (!candidate) continue;
+    candidate->written = entry->last_write_time(ignored);
+    if (!ignored) found.push_back(std::move(*candidate));
+  }
+  std::ranges::sort(found, std::greater(), &Candidate::written);
+  return found;
+}
+
+/// Returns the value of the scan's metadata; empty if there is none.
+std::string ScanValue(const RecordingInfo& info, const char* key) {
+  const auto scan = info.metadata.find(std::string(kScanMetadata));
+  if (scan == info.metadata.end()) return {};
+  const auto value = scan->second.find(key);
+  return value == scan->second.end() ? std::string() : value->second;
+}
+
+std::uint64_t SessionOf(const RecordingInfo& info) {
+  const std::string text = ScanValue(info, "session");
+  std::uint64_t session = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), session);
+  return error == std::errc() && end == text.data() + text.size() ? session : 0;
+}
+
+std::uint64_t CountOf(const RecordingInfo& info, Sensor sensor) {
+  const std::string_view topic =
+      sensor == Sensor::kDepth ? recording::kDepthTopic : recording::kThermalTopic;
+  const auto count = info.messages_by_topic.find(std::string(topic));
+  return count == info.messages_by_topic.end() ? 0 : count->second;
+}
+
+/// Says whose frame an item is, and which.
+struct FramePoint {
+  Sensor sensor{};
+  std::uint64_t number = 0;
+  CaptureTime time{};
+};
+
+std::optional<FramePoint> PointOf(const RecordedItem& item) {
+  if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
+    const FrameHeader& header = depth->frame.header;
+    return FramePoint{Sensor::kDepth, header.frame_number, header.capture_time};
+  }
+  if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
+    const FrameHeader& header = thermal->frame.header;
+    return FramePoint{Sensor::kThermal, header.frame_number, header.capture_time};
+  }
+  return std::nullopt;
+}
+
+/// Finds out which frames one file has, by samples, and exactly at the end of each stream.
+class FileSurvey {
+ public:
+  FileSurvey(std::filesystem::path path, RecordingReader& reader)
+      : path_(std::move(path)), reader_(reader) {
+    const RecordingInfo& info = reader_.info();
+    if (!info.start || !info.end) return;
+    const Nanoseconds length = *info.end - *info.start;
+    const Nanoseconds interval = std::max(kPlaceInterval, length / kMaxPlacesInFile);
+    for (CaptureTime time = *info.start; time <= *info.end; time += interval) AddPlaces(time);
+    for (const Sensor sensor : kSensors) FindEnd(sensor, interval);
+  }
+
+  /// Enters what was found.
+  void AddTo(InterruptedScan& scan) const {
+    for (const Sensor sensor : kSensors) {
+      const auto index = static_cast<std::size_t>(sensor);
+      const std::vector<FramePoint>& places = places_[index];
+      RecordedStream& stream = scan.streams[index];
+      if (places.empty() || places.front().number < stream.next) continue;
+      stream.frames += CountOf(reader_.info(), sensor);
+      stream.next = last_[index].number + 1;
+      if (rate_hz_[index] > 0.0) stream.rate_hz = rate_hz_[index];
+      scan.newest = std::max(scan.newest, last_[index].time);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::uint64_t end = i + 1 < places.size() ? places[i + 1].number : stream.next;
+        scan.runs.push_back({path_, sensor, {places[i].number, end - 1}, places[i].time});
+      }
+    }
+  }
+
+ private:
+  /// Returns the next frame; nullopt at the end, and where the file cannot be read.
+  std::optional<FramePoint> NextFrame(int& items_left) {
+    while (items_left-- > 0) {
+      const Result<std::optional<RecordedItem>> item = reader_.Next();
+      if (!item) continue;  // One message; the next may be right.
+      if (!*item) break;
+      if (const std::optional<FramePoint> point = PointOf(**item)) return point;
+    }
+    return std::nullopt;
+  }
+
+  /// Notes the first frame of each stream from `time` on.
+  void AddPlaces(CaptureTime time) {
+    if (!reader_.Seek(time).ok()) return;
+    std::array<bool, 2> found{};
+    int items_left = kMaxItemsPerPlace;
+    while (!found[0] || !found[1]) {
+      const std::optional<FramePoint> point = NextFrame(items_left);
+      if (!point) return;
+      const auto index = static_cast<std::size_t>(point->sensor);
+      if (std::exchange(found[index], true)) continue;
+      std::vector<FramePoint>& places = places_[index];
+      if (places.empty() || places.back().number < point->number) places.push_back(*point);
+    }
+  }
+
+  /// Finds the last frame of a stream, which lies no further than an interval behind its last
+  /// place, and the rate there.
+  void FindEnd(Sensor sensor, Nanoseconds interval) {
+    const auto index = static_cast<std::size_t>(sensor);
+    if (places_[index].empty()) return;
+    const FramePoint first = places_[index].back();
+    last_[index] = first;
+    if (!reader_.Seek(first.time).ok()) return;
+    int items_left = std::numeric_limits<int>::max();
+    while (const std::optional<FramePoint> point = NextFrame(items_left)) {
+      if (point->time > first.time + interval + kPlaceInterval) break;
+      if (point->sensor == sensor && point->number > last_[index].number) last_[index] = *point;
+    }
+    const FramePoint& last = last_[index];
+    const auto before = std::find_if(
+        places_[index].rbegin(), places_[index].rend(),
+        [&](const FramePoint& place) { return last.time - place.time >= kMinRateTime; });
+    if (before == places_[index].rend()) return;
+    rate_hz_[index] =
+        static_cast<double>(last.number - before->number) / ToSeconds(last.time - before->time);
+  }
+
+  const std::filesystem::path path_;
+  RecordingReader& reader_;
+  // By Sensor.
+  std::array<std::vector<FramePoint>, 2> places_;  ///< Ascending.
+  std::array<FramePoint, 2> last_{};
+  std::array<double, 2> rate_hz_{};
+};
+
+/// Returns the rig's newest recording; nullptr if there is none.
+std::unique_ptr<RecordingReader> OpenNewest(const std::vector<Candidate>& candidates,
+                                            const std::string& edge_id, Candidate& newest) {
+  for (std::size_t i = 0; i < std::min(candidates.size(), kMaxOpened); ++i) {
+    Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidates[i].path);
+    if (!reader || ScanValue((*reader)->info(), "edge_id") != edge_id) continue;
+    newest = candidates[i];
+    return std::move(*reader);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> ScanMetadata(const std::string& edge_id, std::uint64_t session) {
+  return {{"edge_id", edge_id}, {"session", fmt::format("{}", session)}};
+}
+
+std::uint64_t InterruptedScan::NextNumber(Sensor sensor, CaptureTime now) const {
+  const RecordedStream& stream = Of(sensor);
+  const double rate_hz =
+      stream.rate_hz > 0.0 ? std::min(stream.rate_hz, kMaxRate_hz) : kMaxRate_hz / 2.0;
+  const double passed_s = std::max(0.0, ToSeconds(now - newest));
+  return stream.next + kSpareNumbers + static_cast<std::uint64_t>(std::ceil(rate_hz * passed_s));
+}
+
+std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
+                                                   const std::string& edge_id, CaptureTime now,
+                                                   Nanoseconds max_age) {
+  if (record == "off" || max_age <= Nanoseconds(0) || IsDevice(record)) return std::nullopt;
+  const std::vector<Candidate> candidates = CandidatesOf(record);
+  Candidate newest;
+  const std::unique_ptr<RecordingReader> reader = OpenNewest(candidates, edge_id, newest);
+  if (reader == nullptr || reader->info().complete || IsBeingWritten(newest.path))
+    return std::nullopt;
+  // Without a survey: it takes time.
+  const RecordingInfo& info = reader->info();
+  if (!info.end || now < *info.end || now - *info.end > max_age) return std::nullopt;
+
+  InterruptedScan scan;
+  scan.session = SessionOf(info);
+  scan.path = newest.first;
+  scan.parts = newest.part;
+  scan.metadata = info.metadata;
+  if (Result<Rig> rig = reader->ReadRig()) scan.rig = std::move(*rig);
+  if (scan.session == 0) return std::nullopt;
+
+  std::vector<Candidate> parts;
+  std::ranges::copy_if(candidates, std::back_inserter(parts), [&](const Candidate& candidate) {
+    return candidate.first == newest.first && candidate.part <= newest.part;
+  });
+  std::ranges::sort(parts, {}, &Candidate::part);
+  for (const Candidate& part : parts) {
+    const Result<std::unique_ptr<RecordingReader>> file = RecordingReader::Open(part.path);
+    if (!file || SessionOf((*file)->info()) != scan.session) continue;
+    FileSurvey(part.path, **file).AddTo(scan);
+  }
+  const bool has_frames = scan.Of(Sensor::kDepth).next + scan.Of(Sensor::kThermal).next > 0;
+  if (!has_frames || now < scan.newest) return std::nullopt;
+  return scan;
+}
+
+}  // namespace isotherm
