@@ -132,6 +132,20 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
   return std::make_unique<FileSink>(std::move(fd), path);
 }
 
+Result<std::unique_ptr<ByteSink>> ReopenFileSink(const std::filesystem::path& path,
+                                                 std::uint64_t size) {
+  FileDescriptor fd(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
+  if (fd.get() < 0) return Err(FromErrno(errno, "open", path));
+  if (::flock(fd.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    return Err(FailedPrecondition(
+        fmt::format("{} is still being written by another program", path.string())));
+  }
+  const bool is_there = ::ftruncate(fd.get(), static_cast<off_t>(size)) == 0 &&
+                        ::lseek(fd.get(), 0, SEEK_END) == static_cast<off_t>(size);
+  if (!is_there) return Err(FromErrno(errno, "cut", path));
+  return std::make_unique<FileSink>(std::move(fd), path);
+}
+
 Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path) {
   // A pipe would be waited for until somebody writes to it.
   FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));

@@ -33,6 +33,10 @@ class ByteSource {
 /// or pipe.
 Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path);
 
+/// A file that nobody writes, cut to its first `size` bytes, behind which it goes on.
+Result<std::unique_ptr<ByteSink>> ReopenFileSink(const std::filesystem::path& path,
+                                                 std::uint64_t size);
+
 /// A regular file, read in pieces. Its size is taken when it is opened.
 Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path);
 

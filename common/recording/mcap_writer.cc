@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/recording/mcap_summary.h"
 
 namespace isotherm::mcap {
 namespace {
@@ -219,61 +220,17 @@ Status Writer::Close() {
   if (flushed.ok()) {
     Bytes end;
     Append(DataEnd{.data_section_crc = data_crc_}, end);
-    AppendSummary(end);
-    end.insert(end.end(), kMagic.begin(), kMagic.end());
+    AppendSummary({.schemas = schemas_,
+                   .channels = channels_,
+                   .statistics = statistics_,
+                   .metadata_indexes = metadata_indexes_,
+                   .chunk_indexes = chunk_indexes_},
+                  offset_, end);
     if (WriteBytes(end).ok() && options_.sync) failure_ = sink_->Sync();
   }
   const Status closed = sink_->Close();
   if (failure_.ok()) failure_ = closed;
   return failure_;
-}
-
-void Writer::AppendSummary(Bytes& out) const {
-  const std::size_t summary_begin = out.size();
-  const std::uint64_t summary_start = offset_ + summary_begin;
-  std::vector<SummaryOffset> offsets;
-  for (const Opcode group : {Opcode::kSchema, Opcode::kChannel, Opcode::kStatistics,
-                             Opcode::kMetadataIndex, Opcode::kChunkIndex}) {
-    AppendSummaryGroup(group, out, offsets);
-  }
-  Footer footer{.summary_start = summary_start,
-                .summary_offset_start = offset_ + out.size(),
-                .summary_crc = 0};
-  for (const SummaryOffset& offset : offsets) Append(offset, out);
-  // The checksum covers the summary and the footer up to, not including, the checksum itself.
-  Bytes footer_record;
-  Append(footer, footer_record);
-  const std::uint32_t summary_crc = Crc32(std::span(out).subspan(summary_begin));
-  footer.summary_crc = Crc32(
-      std::span(footer_record).first(kFooterRecordBytes - sizeof(footer.summary_crc)), summary_crc);
-  Append(footer, out);
-}
-
-void Writer::AppendSummaryGroup(Opcode group, Bytes& out,
-                                std::vector<SummaryOffset>& offsets) const {
-  const std::size_t begin = out.size();
-  switch (group) {
-    case Opcode::kSchema:
-      for (const Schema& schema : schemas_) Append(schema, out);
-      break;
-    case Opcode::kChannel:
-      for (const Channel& channel : channels_) Append(channel, out);
-      break;
-    case Opcode::kStatistics: {
-      Statistics statistics = statistics_;
-      statistics.schema_count = static_cast<std::uint16_t>(schemas_.size());
-      statistics.channel_count = static_cast<std::uint32_t>(channels_.size());
-      Append(statistics, out);
-      break;
-    }
-    case Opcode::kMetadataIndex:
-      for (const MetadataIndex& index : metadata_indexes_) Append(index, out);
-      break;
-    default:
-      for (const ChunkIndex& index : chunk_indexes_) Append(index, out);
-  }
-  if (out.size() == begin) return;
-  offsets.push_back({.group = group, .start = offset_ + begin, .length = out.size() - begin});
 }
 
 Status Writer::WriteBytes(std::span<const std::uint8_t> bytes) {

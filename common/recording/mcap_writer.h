@@ -81,8 +81,6 @@ class Writer {
   /// Writes the indexes of the chunk that was just written; completes `index` and empties the
   /// chunk.
   Status WriteMessageIndexes(ChunkIndex& index);
-  void AppendSummary(Bytes& out) const;
-  void AppendSummaryGroup(Opcode group, Bytes& out, std::vector<SummaryOffset>& offsets) const;
   /// Writes and counts; remembers the first failure.
   Status WriteBytes(std::span<const std::uint8_t> bytes);
   void AddToStatistics(const OpenChunk& chunk);

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "common/recording/mcap_repair.h"
+
 namespace isotherm {
 
 std::filesystem::path PartPath(const std::filesystem::path& path, int part) {
@@ -36,6 +38,10 @@ bool IsBeingWritten(const std::filesystem::path& path) {
   const bool is_locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(file);
   return is_locked;
+}
+
+Result<std::uint64_t> CompleteRecording(const std::filesystem::path& path) {
+  return mcap::CompleteFile(path);
 }
 
 bool EndsFile(const Status& status) {

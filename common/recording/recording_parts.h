@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "common/base/status.h"
@@ -19,6 +20,12 @@ bool IsDevice(const std::filesystem::path& path);
 /// Returns whether a process that lives writes this recording. Says no where the file system has no
 /// locks.
 bool IsBeingWritten(const std::filesystem::path& path);
+
+/// Completes a recording whose writer did not (a power cut, a crash), in place: cuts off what is
+/// not whole at its end, and appends index and summary, so that any program for MCAP files reads
+/// it. Returns how many bytes were cut off; 0 also for one that is complete. kFailedPrecondition
+/// for a file that is still written, or is damaged in the middle.
+Result<std::uint64_t> CompleteRecording(const std::filesystem::path& path);
 
 /// Returns whether the file cannot go on after a writer's `status`: the disk failed. Otherwise one
 /// message was wrong, and the next may be right.

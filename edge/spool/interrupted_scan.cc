@@ -229,6 +229,25 @@ std::unique_ptr<RecordingReader> OpenNewest(const std::vector<Candidate>& candid
   return nullptr;
 }
 
+/// An opened file of a scan.
+struct Part {
+  std::filesystem::path path;
+  std::unique_ptr<RecordingReader> reader;
+};
+
+/// Returns the files of the scan that can be read, the first one first.
+std::vector<Part> PartsOf(const InterruptedScan& scan, std::vector<Candidate> candidates) {
+  std::ranges::sort(candidates, {}, &Candidate::part);
+  std::vector<Part> parts;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.first != scan.path || candidate.part > scan.parts) continue;
+    Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidate.path);
+    if (reader && SessionOf((*reader)->info()) == scan.session)
+      parts.push_back({candidate.path, std::move(*reader)});
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::map<std::string, std::string> ScanMetadata(const std::string& edge_id, std::uint64_t session) {
@@ -252,28 +271,23 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
   const std::unique_ptr<RecordingReader> reader = OpenNewest(candidates, edge_id, newest);
   if (reader == nullptr || reader->info().complete || IsBeingWritten(newest.path))
     return std::nullopt;
-  // Without a survey: it takes time.
-  const RecordingInfo& info = reader->info();
-  if (!info.end || now < *info.end || now - *info.end > max_age) return std::nullopt;
-
   InterruptedScan scan;
-  scan.session = SessionOf(info);
+  scan.session = SessionOf(reader->info());
   scan.path = newest.first;
   scan.parts = newest.part;
-  scan.metadata = info.metadata;
+  scan.metadata = reader->info().metadata;
   if (Result<Rig> rig = reader->ReadRig()) scan.rig = std::move(*rig);
   if (scan.session == 0) return std::nullopt;
 
-  std::vector<Candidate> parts;
-  std::ranges::copy_if(candidates, std::back_inserter(parts), [&](const Candidate& candidate) {
-    return candidate.first == newest.first && candidate.part <= newest.part;
-  });
-  std::ranges::sort(parts, {}, &Candidate::part);
-  for (const Candidate& part : parts) {
-    const Result<std::unique_ptr<RecordingReader>> file = RecordingReader::Open(part.path);
-    if (!file || SessionOf((*file)->info()) != scan.session) continue;
-    FileSurvey(part.path, **file).AddTo(scan);
+  const std::vector<Part> parts = PartsOf(scan, candidates);
+  std::optional<CaptureTime> end;
+  for (const Part& part : parts) {
+    const std::optional<CaptureTime>& of_part = part.reader->info().end;
+    if (of_part) end = std::max(end.value_or(*of_part), *of_part);
   }
+  // Before the survey, which takes time.
+  if (!end || now < *end || now - *end > max_age) return std::nullopt;
+  for (const Part& part : parts) FileSurvey(part.path, *part.reader).AddTo(scan);
   const bool has_frames = scan.Of(Sensor::kDepth).next + scan.Of(Sensor::kThermal).next > 0;
   if (!has_frames || now < scan.newest) return std::nullopt;
   return scan;

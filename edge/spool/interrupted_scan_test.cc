@@ -218,6 +218,15 @@ TEST_F(InterruptedScanTest, ACameraThatWasLostLongBeforeKeepsItsLastNumber) {
   ExpectThatRunsLeadTo(numbers, *scan, folder_.path() / "scan.mcap");
 }
 
+TEST_F(InterruptedScanTest, AProcessThatWasKilledBeforeItsFirstFrameEndsNoScan) {
+  Kill("scan.mcap", {}, 5s);
+  Kill("scan-2.mcap", {}, 0s);
+  const std::optional<InterruptedScan> scan = Find(6s);
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(scan->parts, 2);
+  EXPECT_EQ(scan->Of(Sensor::kThermal).next, 200U);
+}
+
 TEST_F(InterruptedScanTest, AFileThatBreaksOffGivesWhatIsWhole) {
   const Numbers numbers = Kill("scan.mcap", {}, 5s);
   const std::filesystem::path path = folder_.path() / "scan.mcap";

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
@@ -91,7 +92,8 @@ class Spool {
   /// To be called several times a second. `idle`: no frame came for a moment, so that nothing but
   /// this brings to the disk what is still collected.
   void Tend(bool idle);
-  /// Writes the summary. The first error of the whole recording, or ok.
+  /// Writes the summary, also of files that another process has left without. The first error of
+  /// the whole recording, or ok.
   Status Close();
 
   /// Returns what the recording has. Thread-safe, as long as the spool lives.
@@ -121,6 +123,8 @@ class Spool {
   void NoteWorks();
   /// The first error of closing it, or ok.
   Status CloseFile();
+  /// Completes the files that another process has left.
+  void CompleteFilesBefore();
   void UpdateCounters();
   void UpdateStatus();
   std::string Brief() const;
@@ -131,6 +135,7 @@ class Spool {
   std::optional<RecordingFile> file_;
   std::filesystem::path path_;
   RecordingStats closed_{};  ///< Sum over the files before.
+  std::vector<std::filesystem::path> left_by_another_;
   Status first_error_;
   Status problem_;  ///< Ok while all is well.
   bool at_reserve_ = false;

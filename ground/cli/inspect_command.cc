@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
+#include "common/recording/recording_parts.h"
 #include "ground/cli/command.h"
 #include "ground/cli/frame_rendering.h"
 #include "ground/cli/recording_report.h"
@@ -18,16 +20,18 @@ namespace {
 constexpr const char* kInspectFooter =
     R"(Shows what is in a recording: streams with rates, missing frames and gaps, shutter events,
 calibration, size, and whether the file is complete. A torn file is read up to its last good
-part. Stamps, units and temperatures that cannot be right are said, with exit status 65.
+part; --repair first makes it whole up to there, in place, for programs that need an index.
+Stamps, units and temperatures that cannot be right are said, with exit status 65.
 
 Examples:
   isotherm inspect scan.mcap
+  isotherm inspect scan.mcap --repair
   isotherm inspect scan.mcap --render 120 -o frame.png
   isotherm inspect scan.mcap --render 0 --stream depth -o depth.png)";
 
 struct InspectArguments {
   std::string recording, output, stream;
-  bool json = false;
+  bool json = false, repair = false;
   std::optional<std::uint64_t> render;
 };
 
@@ -39,7 +43,23 @@ Sensor ChosenStream(const InspectArguments& arguments, const RecordingInfo& info
                                                                         : Sensor::kDepth;
 }
 
+/// Says on standard error what it did, so that JSON stays alone.
+Status Repair(const std::string& recording) {
+  std::error_code ignored;
+  const auto before = std::filesystem::file_size(recording, ignored);
+  const Result<std::uint64_t> cut = CompleteRecording(recording);
+  if (!cut) return cut.error();
+  const bool changed = before != std::filesystem::file_size(recording, ignored);
+  const std::string done = changed ? fmt::format("completed, {} bytes cut off at its end", *cut)
+                                   : std::string("is complete, nothing to repair");
+  std::fputs(fmt::format("{}: {}\n", recording, done).c_str(), stderr);
+  return OkStatus();
+}
+
 int Run(const InspectArguments& arguments) {
+  if (arguments.repair) {
+    if (const Status repaired = Repair(arguments.recording); !repaired.ok()) return Fail(repaired);
+  }
   const auto reader = RecordingReader::Open(arguments.recording);
   if (!reader) return Fail(reader.error());
   if (arguments.render) {
@@ -62,6 +82,8 @@ void AddInspectCommand(CLI::App& app, CommandBody& body) {
   auto arguments = std::make_shared<InspectArguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_flag("--json", arguments->json, "Machine-readable output");
+  command->add_flag("--repair", arguments->repair,
+                    "First complete a file that breaks off, in place");
   command->add_option("--render", arguments->render, "Draw frame N (from 0) as an image instead");
   command
       ->add_option("--stream", arguments->stream,
