@@ -77,11 +77,11 @@ std::optional<InterruptedScan> FindScanToResume(const EdgeOptions& options,
 }
 
 void Resume(const InterruptedScan& before, EdgeSession& session) {
-  session.resumed_session = before.session;
+  session.resumed_session = before.last.session;
   for (const Sensor sensor : kSensors)
     FirstNumber(session, sensor) = before.NextNumber(sensor, session.time);
   LOG(Edge, Warning) << "the scan in " << before.path.string()
-                     << " was interrupted, and goes on: session=" << before.session
+                     << " was interrupted, and goes on: session=" << before.last.session
                      << " recorded depth=" << before.Of(Sensor::kDepth).frames
                      << " thermal=" << before.Of(Sensor::kThermal).frames
                      << ", nothing recorded for s=" << ToSeconds(session.time - before.newest);

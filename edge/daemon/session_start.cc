@@ -97,7 +97,8 @@ RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
   const TimestamperOptions& timing = options.timestamper();
   RecordingDescription::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},
-      {std::string(kScanMetadata), ScanMetadata(options.link().edge_id(), start.session())},
+      {std::string(kScanMetadata), ToMetadata(ScanPart{options.link().edge_id(), start.session(),
+                                                       start.time, start.first_numbers})},
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
       {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
       {"timing",

@@ -96,11 +96,31 @@ std::string ScanValue(const RecordingInfo& info, const char* key) {
   return value == scan->second.end() ? std::string() : value->second;
 }
 
-std::uint64_t SessionOf(const RecordingInfo& info) {
-  const std::string text = ScanValue(info, "session");
-  std::uint64_t session = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), session);
-  return error == std::errc() && end == text.data() + text.size() ? session : 0;
+constexpr const char* kEdgeIdKey = "edge_id";
+constexpr const char* kSessionKey = "session";
+constexpr const char* kBegunKey = "process_begun_ns";
+constexpr std::array kFirstNumberKeys = {"first_depth_frame", "first_thermal_frame"};
+
+/// Returns the number there; 0 if it is none.
+std::uint64_t NumberOf(const RecordingInfo& info, const char* key) {
+  const std::string text = ScanValue(info, key);
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : 0;
+}
+
+std::uint64_t SessionOf(const RecordingInfo& info) { return NumberOf(info, kSessionKey); }
+
+ScanPart PartOf(const RecordingInfo& info) {
+  // Times and numbers that cannot be are damage, and count for nothing.
+  constexpr std::uint64_t kMaxNumber = std::uint64_t{1} << 62U;
+  const auto number = [&info](const char* key) {
+    return NumberOf(info, key) <= kMaxNumber ? NumberOf(info, key) : 0;
+  };
+  return {ScanValue(info, kEdgeIdKey),
+          SessionOf(info),
+          CaptureTimeFromNanoseconds(static_cast<std::int64_t>(number(kBegunKey))),
+          {number(kFirstNumberKeys[0]), number(kFirstNumberKeys[1])}};
 }
 
 std::uint64_t CountOf(const RecordingInfo& info, Sensor sensor) {
@@ -222,7 +242,7 @@ std::unique_ptr<RecordingReader> OpenNewest(const std::vector<Candidate>& candid
                                             const std::string& edge_id, Candidate& newest) {
   for (std::size_t i = 0; i < std::min(candidates.size(), kMaxOpened); ++i) {
     Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidates[i].path);
-    if (!reader || ScanValue((*reader)->info(), "edge_id") != edge_id) continue;
+    if (!reader || ScanValue((*reader)->info(), kEdgeIdKey) != edge_id) continue;
     newest = candidates[i];
     return std::move(*reader);
   }
@@ -242,7 +262,7 @@ std::vector<Part> PartsOf(const InterruptedScan& scan, std::vector<Candidate> ca
   for (const Candidate& candidate : candidates) {
     if (candidate.first != scan.path || candidate.part > scan.parts) continue;
     Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidate.path);
-    if (reader && SessionOf((*reader)->info()) == scan.session)
+    if (reader && SessionOf((*reader)->info()) == scan.last.session)
       parts.push_back({candidate.path, std::move(*reader)});
   }
   return parts;
@@ -250,16 +270,28 @@ std::vector<Part> PartsOf(const InterruptedScan& scan, std::vector<Candidate> ca
 
 }  // namespace
 
-std::map<std::string, std::string> ScanMetadata(const std::string& edge_id, std::uint64_t session) {
-  return {{"edge_id", edge_id}, {"session", fmt::format("{}", session)}};
+std::map<std::string, std::string> ToMetadata(const ScanPart& part) {
+  std::map<std::string, std::string> metadata = {
+      {kEdgeIdKey, part.edge_id},
+      {kSessionKey, fmt::format("{}", part.session)},
+      {kBegunKey, fmt::format("{}", ToNanoseconds(part.begun))}};
+  for (std::size_t i = 0; i < kFirstNumberKeys.size(); ++i)
+    metadata[kFirstNumberKeys.at(i)] = fmt::format("{}", part.first_numbers.at(i));
+  return metadata;
 }
 
 std::uint64_t InterruptedScan::NextNumber(Sensor sensor, CaptureTime now) const {
   const RecordedStream& stream = Of(sensor);
   const double rate_hz =
       stream.rate_hz > 0.0 ? std::min(stream.rate_hz, kMaxRate_hz) : kMaxRate_hz / 2.0;
-  const double passed_s = std::max(0.0, ToSeconds(now - newest));
-  return stream.next + kSpareNumbers + static_cast<std::uint64_t>(std::ceil(rate_hz * passed_s));
+  const auto later = [&](std::uint64_t number, CaptureTime since) {
+    const double passed_s = std::max(0.0, ToSeconds(now - since));
+    return number + kSpareNumbers + static_cast<std::uint64_t>(std::ceil(rate_hz * passed_s));
+  };
+  const std::uint64_t by_frames = later(stream.next, newest);
+  // The newest process may have been killed before it had recorded anything.
+  const std::uint64_t first = last.first_numbers[static_cast<std::size_t>(sensor)];
+  return first > stream.next ? std::max(by_frames, later(first, last.begun)) : by_frames;
 }
 
 std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
@@ -272,12 +304,12 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
   if (reader == nullptr || reader->info().complete || IsBeingWritten(newest.path))
     return std::nullopt;
   InterruptedScan scan;
-  scan.session = SessionOf(reader->info());
+  scan.last = PartOf(reader->info());
   scan.path = newest.first;
   scan.parts = newest.part;
   scan.metadata = reader->info().metadata;
   if (Result<Rig> rig = reader->ReadRig()) scan.rig = std::move(*rig);
-  if (scan.session == 0) return std::nullopt;
+  if (scan.last.session == 0) return std::nullopt;
 
   const std::vector<Part> parts = PartsOf(scan, candidates);
   std::optional<CaptureTime> end;

@@ -19,8 +19,14 @@ namespace isotherm {
 /// This metadata of a recording says which scan of which rig it is a part of.
 inline constexpr std::string_view kScanMetadata = "scan";
 
-/// Returns what stands there.
-std::map<std::string, std::string> ScanMetadata(const std::string& edge_id, std::uint64_t session);
+/// Holds what stands there.
+struct ScanPart {
+  std::string edge_id;
+  std::uint64_t session = 0;
+  CaptureTime begun{};                           ///< The process that wrote the file.
+  std::array<std::uint64_t, 2> first_numbers{};  ///< Of that process's frames, by Sensor.
+};
+std::map<std::string, std::string> ToMetadata(const ScanPart& part);
 
 /// Tells of frames in a row that a file has, some of which it may lack after all.
 struct RecordedRun {
@@ -40,21 +46,21 @@ struct RecordedStream {
 /// A scan that did not end: its process did, without closing the recording. Another process can go
 /// on with it.
 struct InterruptedScan {
-  std::uint64_t session = 0;
   std::filesystem::path path;             ///< The first file's.
   int parts = 0;                          ///< The number of the newest file.
   CaptureTime newest{};                   ///< Frame.
   std::array<RecordedStream, 2> streams;  ///< By Sensor.
   std::vector<RecordedRun> runs;          ///< File by file, and ascending in each stream.
-  std::optional<Rig> rig;                 ///< As the newest file says.
+  ScanPart last;                          ///< Of the newest file, which may have no frames.
+  std::optional<Rig> rig;                 ///< As it says.
   RecordingDescription::Metadata metadata;
 
   const RecordedStream& Of(Sensor sensor) const {
     return streams[static_cast<std::size_t>(sensor)];
   }
-  /// Returns the number that the first frame of a process may have that goes on at `now`: the one
-  /// before may have published frames which it had not recorded yet, and numbers advance no faster
-  /// than the camera did.
+  /// Returns the number that the first frame of a process may have that goes on at `now`: those
+  /// before may have published frames which they had not recorded yet, and numbers advance no
+  /// faster than the camera does.
   std::uint64_t NextNumber(Sensor sensor, CaptureTime now) const;
 };
 

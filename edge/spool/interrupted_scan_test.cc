@@ -44,11 +44,12 @@ class InterruptedScanTest : public ::testing::Test {
   };
 
   RecordingFile Begin(const std::filesystem::path& path, const Content& content) {
-    RecordingFiles files(
-        {path,
-         500ms,
-         std::nullopt,
-         {{std::string(kScanMetadata), ScanMetadata(content.edge_id, content.session)}}});
+    RecordingFiles files({path,
+                          500ms,
+                          std::nullopt,
+                          {{std::string(kScanMetadata),
+                            ToMetadata({content.edge_id, content.session,
+                                        kScanStart + content.begin, content.first_numbers})}}});
     return files.Next().value();
   }
 
@@ -129,7 +130,7 @@ TEST_F(InterruptedScanTest, KnowsWhatAKilledProcessHasRecorded) {
   const Numbers numbers = Kill("scan.mcap", {.left_out = 10}, 35s);
   const std::optional<InterruptedScan> scan = Find(37s);
   ASSERT_TRUE(scan);
-  EXPECT_EQ(scan->session, kSession);
+  EXPECT_EQ(scan->last.session, kSession);
   EXPECT_EQ(scan->path, folder_.path() / "scan.mcap");
   EXPECT_EQ(scan->parts, 1);
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
@@ -220,11 +221,13 @@ TEST_F(InterruptedScanTest, ACameraThatWasLostLongBeforeKeepsItsLastNumber) {
 
 TEST_F(InterruptedScanTest, AProcessThatWasKilledBeforeItsFirstFrameEndsNoScan) {
   Kill("scan.mcap", {}, 5s);
-  Kill("scan-2.mcap", {}, 0s);
-  const std::optional<InterruptedScan> scan = Find(6s);
+  Kill("scan-2.mcap", {.begin = 6s, .first_numbers = {220, 260}}, 0s);
+  const std::optional<InterruptedScan> scan = Find(7s);
   ASSERT_TRUE(scan);
   EXPECT_EQ(scan->parts, 2);
   EXPECT_EQ(scan->Of(Sensor::kThermal).next, 200U);
+  const std::uint64_t sent_by_the_second = 260 + 30;
+  EXPECT_GT(scan->NextNumber(Sensor::kThermal, kScanStart + 7s), sent_by_the_second);
 }
 
 TEST_F(InterruptedScanTest, AFileThatBreaksOffGivesWhatIsWhole) {
