@@ -21,6 +21,8 @@ void ToWire(const CommandResult& from, isotherm_wire_CommandResult* to);
 void ToWire(const Receipt& from, isotherm_wire_Receipt* to);
 void ToWire(const Feedback& from, isotherm_wire_Feedback* to);
 void ToWire(const Hello& from, isotherm_wire_Hello* to);
+void ToWire(const RecordingRequest& from, isotherm_wire_RecordingRequest* to);
+void ToWire(const RecordingPiece& from, isotherm_wire_RecordingPiece* to);
 
 /// Fills `to`, or says why `from` cannot be used. Frames are checked before their payload is
 /// copied.
@@ -36,6 +38,9 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_CommandResult& from, Co
 std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Hello& from, Hello* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_RecordingRequest& from,
+                                     RecordingRequest* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_RecordingPiece& from, RecordingPiece* to);
 
 /// A frame is the same on the wire whichever way it takes.
 template <typename Frame, typename Wire>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <isotherm_control.h>
 #include <isotherm_frames.h>
+#include <isotherm_recordings.h>
 
 #include <algorithm>
 #include <array>
@@ -38,6 +39,10 @@ const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
       return &isotherm_wire_Receipt_desc;
     case TopicId::kFeedback:
       return &isotherm_wire_Feedback_desc;
+    case TopicId::kRecordingRequest:
+      return &isotherm_wire_RecordingRequest_desc;
+    case TopicId::kRecordingPiece:
+      return &isotherm_wire_RecordingPiece_desc;
     case TopicId::kHello:
       return &isotherm_wire_Hello_desc;
     case TopicId::kExternalOdometry:
@@ -327,6 +332,8 @@ template class Writer<CommandResult>;
 template class Writer<Receipt>;
 template class Writer<Feedback>;
 template class Writer<Hello>;
+template class Writer<RecordingRequest>;
+template class Writer<RecordingPiece>;
 
 template class Reader<EncodedDepthFrame>;
 template class Reader<EncodedThermalFrame>;
@@ -340,5 +347,7 @@ template class Reader<CommandResult>;
 template class Reader<Receipt>;
 template class Reader<Feedback>;
 template class Reader<Hello>;
+template class Reader<RecordingRequest>;
+template class Reader<RecordingPiece>;
 
 }  // namespace isotherm

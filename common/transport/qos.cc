@@ -35,7 +35,7 @@ constexpr dds_duration_t kLease = DDS_SECS(1);
 // The major version is in the names, so that what a peer of another one sends is not even
 // delivered. The hello has none, and its type is frozen: it is how they tell each other.
 static_assert(kWireMajor == 3);
-constexpr std::array<Profile, 12> kProfiles = {{
+constexpr std::array<Profile, 14> kProfiles = {{
     {"isotherm/3/depth", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/3/thermal", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/3/rig", 1, true, kSmallBlocking, kLease},
@@ -50,6 +50,9 @@ constexpr std::array<Profile, 12> kProfiles = {{
     // Not kept: what a ground that comes later lacks, it asks for.
     {"isotherm/3/backfill_depth", kFrameHistory, false, kFrameBlocking, kLease},
     {"isotherm/3/backfill_thermal", kFrameHistory, false, kFrameBlocking, kLease},
+    // Whoever asks keeps no more than that under way (kMaxRecordingRequests), and asks again.
+    {"isotherm/3/recording_request", kRecordingHistory, false, kSmallBlocking, kLease},
+    {"isotherm/3/recording_piece", kRecordingHistory, false, kFrameBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }

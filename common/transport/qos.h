@@ -17,6 +17,11 @@ inline constexpr int kMaxFlowWindowFrames = kFrameHistory - 4;
 /// Odometry poses that are kept per rig: more than two seconds at 200 Hz.
 inline constexpr int kExternalOdometryHistory = 512;
 
+/// Requests for pieces of recordings, and answers, that are kept: 2 MB of the largest pieces.
+inline constexpr int kRecordingHistory = 32;
+/// Whoever asks waits for no more answers at once; two can ask at the same time.
+inline constexpr int kMaxRecordingRequests = kRecordingHistory / 2;
+
 /// A write of a frame waits at most this long for room in the middleware's buffers: three frames at
 /// 30 Hz. Longer: the publish thread notices later that the link is stuck; shorter: a short stall
 /// of the network costs frames. Not tuned.

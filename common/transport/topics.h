@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "common/messages/messages.h"
+#include "common/messages/recording_transfer.h"
 
 // Generated from idl/; complete only in the .cc files of this folder.
 struct isotherm_wire_DepthFrame;
@@ -15,6 +16,8 @@ struct isotherm_wire_CommandResult;
 struct isotherm_wire_Receipt;
 struct isotherm_wire_Feedback;
 struct isotherm_wire_Hello;
+struct isotherm_wire_RecordingRequest;
+struct isotherm_wire_RecordingPiece;
 
 namespace isotherm {
 
@@ -32,6 +35,8 @@ enum class TopicId : std::uint8_t {
   kExternalOdometry,
   kBackfillDepth,
   kBackfillThermal,
+  kRecordingRequest,
+  kRecordingPiece,
 };
 
 /// Relates a message to its topic and to the type that idlc generated for it.
@@ -96,6 +101,16 @@ template <>
 struct TopicOf<Hello> {
   using Wire = ::isotherm_wire_Hello;
   static constexpr TopicId kId = TopicId::kHello;
+};
+template <>
+struct TopicOf<RecordingRequest> {
+  using Wire = ::isotherm_wire_RecordingRequest;
+  static constexpr TopicId kId = TopicId::kRecordingRequest;
+};
+template <>
+struct TopicOf<RecordingPiece> {
+  using Wire = ::isotherm_wire_RecordingPiece;
+  static constexpr TopicId kId = TopicId::kRecordingPiece;
 };
 
 }  // namespace isotherm

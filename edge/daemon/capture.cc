@@ -90,10 +90,10 @@ class Scan {
   Scan(const CaptureParts& parts, std::unique_ptr<Spool> spool)
       : parts_(parts),
         is_recorded_(spool != nullptr),
-        pipeline_(parts.options,
-                  {parts.source, parts.publisher, parts.counters, parts.health, parts.clock,
-                   std::move(spool), parts.session.session(), parts.session.first_numbers,
-                   parts.session.rig_thermal_delay_s}) {}
+        pipeline_(parts.options, {parts.source, parts.publisher, parts.counters, parts.health,
+                                  parts.clock, std::move(spool), parts.session.session(),
+                                  parts.session.first_numbers, parts.session.rig_thermal_delay_s}) {
+  }
 
   CaptureEnd Run();
 
@@ -120,14 +120,15 @@ class Scan {
 };
 
 CaptureEnd Scan::Run() {
-  const auto& [options, session, source, counters, health, publisher, leaving, clock, stop] =
-      parts_;
+  const auto& [options, session, source, counters, health, publisher, leaving, is_scanning, clock,
+               stop] = parts_;
   pipeline_.StartReceiving();
   NotifyReady(fmt::format("capturing from {}", source.name()));
   LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
                   << " domain=" << options.link().domain() << " session=" << session.session();
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
+  is_scanning = true;
   pipeline_.StartCapture();
   EdgeMonitor monitor({clock, pipeline_, publisher, counters, health},
                       options.display().image_file());
@@ -164,6 +165,7 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
     // Leaving closes it, too, and in time.
     if (!parts_.options.exit_at_end() && cost_.empty() && pipeline_.IsCaptured()) CloseRecording();
     if (pipeline_.finished()) {
+      parts_.is_scanning = false;
       if (parts_.options.exit_at_end()) return Next::kLeave;
       if (orders_.NoteFinished()) {
         LOG(Edge, Info)

@@ -34,6 +34,7 @@ struct CaptureParts {
   CameraHealth& health;
   Publisher& publisher;
   Leaving& leaving;
+  std::atomic<bool>& is_scanning;  ///< Kept up to date for those who wait for the end.
   const Clock& clock;
   const std::stop_token& stop;
 };

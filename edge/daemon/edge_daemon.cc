@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -25,6 +26,7 @@
 #include "edge/daemon/stop_limits.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/publisher/late_publisher.h"
+#include "edge/recording_server/recording_server.h"
 #include "edge/spool/recording_files.h"
 #include "edge/spool/recording_name.h"
 
@@ -126,11 +128,27 @@ Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
   return Publisher::Create(participant, clock, publisher);
 }
 
-/// A participant and what publishes through it; the first must outlive the second.
+/// A participant and what speaks through it; the first must outlive the others.
 struct Link {
+  std::atomic<bool> is_scanning{false};
   std::unique_ptr<Participant> participant;
+  std::unique_ptr<RecordingServer> server;  ///< Null without recordings.
   std::unique_ptr<Publisher> publisher;
 };
+
+/// Gives away recordings from now on. A scan does not end because it cannot.
+void ServeRecordings(const EdgeOptions& options, Link& link) {
+  const double rate_mb_per_s = options.link().expert().fetch_mb_per_s();
+  if (options.spool().record() == "off" || rate_mb_per_s <= 0.0) return;
+  Result<std::unique_ptr<RecordingServer>> server = RecordingServer::Start(
+      *link.participant, {options.link().edge_id(), options.spool().record(), 1e6 * rate_mb_per_s},
+      link.is_scanning);
+  if (!server) {
+    LOG(Edge, Warning) << "recordings cannot be fetched: " << server.error().message();
+    return;
+  }
+  link.server = std::move(*server);
+}
 
 /// Without a network it captures and records all the same, unless somebody waits for the end of
 /// the source. `link` must stay where it is.
@@ -143,6 +161,7 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
     Result<std::unique_ptr<Publisher>> made = MakePublisher(options, *link.participant, clock);
     if (!made) return made.error();
     link.publisher = std::move(*made);
+    ServeRecordings(options, link);
     return OkStatus();
   }
   if (options.exit_at_end() || joined.error().code() != StatusCode::kUnavailable) {
@@ -156,6 +175,7 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
             JoinDomain(environment, domain, clock, stop, waiting);
         if (!late) return Err(late.error());
         link.participant = std::move(*late);
+        ServeRecordings(options, link);
         return MakePublisher(options, *link.participant, clock);
       });
   return OkStatus();
@@ -199,9 +219,9 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   const Status begun = link.publisher->BeginSession(
       DescribeRig(options, session), before ? PublishedBy(*before, session) : SessionBefore());
   if (!begun.ok()) return {.status = Fail(begun)};
-  return Capture(
-      {options, session, **source, counters, health, *link.publisher, leaving, clock, stop},
-      std::move(*spool));
+  return Capture({options, session, **source, counters, health, *link.publisher, leaving,
+                  link.is_scanning, clock, stop},
+                 std::move(*spool));
 }
 
 }  // namespace

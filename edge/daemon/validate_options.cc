@@ -36,6 +36,7 @@ Status Validate(const LinkOptions& options) {
   problems.CheckRange("domain", options.domain(), 0, 230);
   problems.CheckRange("expert.queue_frames", options.expert().queue_frames(), 1, 100'000);
   problems.CheckRange("expert.backfill_hz", options.expert().backfill_hz(), 0.0, 10'000.0);
+  problems.CheckRange("expert.fetch_mb_per_s", options.expert().fetch_mb_per_s(), 0.0, 10'000.0);
   problems.CheckRange("expert.linger_s", options.expert().linger_s(), 0.0, 3600.0);
   return problems.ToStatus();
 }

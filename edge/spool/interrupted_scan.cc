@@ -9,14 +9,13 @@
 #include <iterator>
 #include <limits>
 #include <memory>
-#include <regex>
-#include <system_error>
 #include <utility>
 #include <variant>
 
 #include "common/recording/recording.h"
 #include "common/recording/recording_parts.h"
 #include "common/recording/recording_topics.h"
+#include "edge/spool/recording_listing.h"
 
 namespace isotherm {
 namespace {
@@ -36,57 +35,6 @@ constexpr double kMaxRate_hz = 200.0;
 /// The rate at the end is measured over this long at least.
 constexpr Nanoseconds kMinRateTime = 200ms;
 constexpr std::uint64_t kSpareNumbers = 8;
-
-/// A file of the folder, and which part of which recording its name says it is.
-struct Candidate {
-  std::filesystem::path path;
-  std::filesystem::path first;  ///< The recording's first file.
-  int part = 1;
-  std::filesystem::file_time_type written;
-};
-
-/// Returns the candidate that a file name means; nullopt: none. Of a recording with a name of its
-/// own, `stem` is that name; empty: any that RecordingPath makes.
-std::optional<Candidate> Parse(const std::filesystem::path& path, const std::string& stem) {
-  static const std::regex kOwn(R"((edge-\d{8}-\d{6}-[0-9a-f]{8})(?:-(\d{1,6}))?)");
-  static const std::regex kNumbered(R"((.*)-(\d{1,6}))");
-  const std::string name = path.stem().string();
-  std::smatch match;
-  std::string base = name;
-  int part = 1;
-  if (stem.empty()) {
-    if (!std::regex_match(name, match, kOwn)) return std::nullopt;
-  } else if (name != stem && (!std::regex_match(name, match, kNumbered) || match[1] != stem)) {
-    return std::nullopt;
-  }
-  if (!match.empty()) {
-    base = match[1];
-    if (match[2].matched) part = std::stoi(match[2]);
-  }
-  return Candidate{path, path.parent_path() / (base + path.extension().string()), part, {}};
-}
-
-/// Returns the candidates that `record` names, the newest first.
-std::vector<Candidate> CandidatesOf(const std::filesystem::path& record) {
-  std::error_code error;
-  const bool is_file = record.has_filename() && !std::filesystem::is_directory(record, error);
-  std::filesystem::path folder = is_file ? record.parent_path() : record;
-  if (folder.empty()) folder = ".";
-  const std::string stem = is_file ? record.stem().string() : "";
-  const std::string extension = is_file ? record.extension().string() : ".mcap";
-  std::vector<Candidate> found;
-  std::filesystem::directory_iterator entry(folder, error);
-  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    std::error_code ignored;
-    if (entry->path().extension() != extension || !entry->is_regular_file(ignored)) continue;
-    std::optional<Candidate> candidate = Parse(entry->path(), stem);
-    if (!candidate) continue;
-    candidate->written = entry->last_write_time(ignored);
-    if (!ignored) found.push_back(std::move(*candidate));
-  }
-  std::ranges::sort(found, std::greater(), &Candidate::written);
-  return found;
-}
 
 /// Returns the value of the scan's metadata; empty if there is none.
 std::string ScanValue(const RecordingInfo& info, const char* key) {
@@ -238,8 +186,8 @@ class FileSurvey {
 };
 
 /// Returns the rig's newest recording; nullptr if there is none.
-std::unique_ptr<RecordingReader> OpenNewest(const std::vector<Candidate>& candidates,
-                                            const std::string& edge_id, Candidate& newest) {
+std::unique_ptr<RecordingReader> OpenNewest(const std::vector<ListedRecording>& candidates,
+                                            const std::string& edge_id, ListedRecording& newest) {
   for (std::size_t i = 0; i < std::min(candidates.size(), kMaxOpened); ++i) {
     Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidates[i].path);
     if (!reader || ScanValue((*reader)->info(), kEdgeIdKey) != edge_id) continue;
@@ -256,10 +204,10 @@ struct Part {
 };
 
 /// Returns the files of the scan that can be read, the first one first.
-std::vector<Part> PartsOf(const InterruptedScan& scan, std::vector<Candidate> candidates) {
-  std::ranges::sort(candidates, {}, &Candidate::part);
+std::vector<Part> PartsOf(const InterruptedScan& scan, std::vector<ListedRecording> candidates) {
+  std::ranges::sort(candidates, {}, &ListedRecording::part);
   std::vector<Part> parts;
-  for (const Candidate& candidate : candidates) {
+  for (const ListedRecording& candidate : candidates) {
     if (candidate.first != scan.path || candidate.part > scan.parts) continue;
     Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidate.path);
     if (reader && SessionOf((*reader)->info()) == scan.last.session)
@@ -298,8 +246,8 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
                                                    const std::string& edge_id, CaptureTime now,
                                                    Nanoseconds max_age) {
   if (record == "off" || max_age <= Nanoseconds(0) || IsDevice(record)) return std::nullopt;
-  const std::vector<Candidate> candidates = CandidatesOf(record);
-  Candidate newest;
+  const std::vector<ListedRecording> candidates = ListRecordings(record);
+  ListedRecording newest;
   const std::unique_ptr<RecordingReader> reader = OpenNewest(candidates, edge_id, newest);
   if (reader == nullptr || reader->info().complete || IsBeingWritten(newest.path))
     return std::nullopt;

@@ -53,6 +53,7 @@ void AddViewCommand(CLI::App& app, CommandBody& body);
 void AddReportCommand(CLI::App& app, CommandBody& body);
 void AddNucCommand(CLI::App& app, CommandBody& body);
 void AddScanCommand(CLI::App& app, CommandBody& body);
+void AddFetchCommand(CLI::App& app, CommandBody& body);
 
 // Those of `isotherm calibrate`.
 void AddCalibrateTimeCommand(CLI::App& calibrate, CommandBody& body);

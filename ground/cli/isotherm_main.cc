@@ -91,6 +91,7 @@ void AddCommands(CLI::App& app, CommandBody& body) {
   AddCalibrateCommand(app, body);
   AddNucCommand(app, body);
   AddScanCommand(app, body);
+  AddFetchCommand(app, body);
   AddOptionsCommand(app, body);
 }
 

@@ -20,8 +20,16 @@ void AddRigAddress(CLI::App& command, RigAddress& address) {
       ->capture_default_str();
 }
 
-Status WithRig(const RigAddress& address,
-               const std::function<Status(RigCommander& rig, const EdgeStatus& status)>& work) {
+namespace {
+
+/// What `work` needs of the link and of the rig that was found on it.
+struct FoundRig {
+  const Participant& link;
+  RigCommander& rig;
+  const EdgeStatus& status;
+};
+
+Status WithFoundRig(const RigAddress& address, const std::function<Status(const FoundRig&)>& work) {
   const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const auto participant = Participant::Create(environment, address.domain);
@@ -29,7 +37,22 @@ Status WithRig(const RigAddress& address,
   const auto rig = RigCommander::Create(**participant, clock, address.edge_id);
   if (!rig) return rig.error();
   const Result<EdgeStatus> status = (*rig)->AwaitStatus(FromSeconds(address.timeout_s));
-  return status ? work(**rig, *status) : status.error();
+  return status ? work({**participant, **rig, *status}) : status.error();
+}
+
+}  // namespace
+
+Status WithRig(const RigAddress& address,
+               const std::function<Status(RigCommander& rig, const EdgeStatus& status)>& work) {
+  return WithFoundRig(address,
+                      [&work](const FoundRig& found) { return work(found.rig, found.status); });
+}
+
+Status WithLink(
+    const RigAddress& address,
+    const std::function<Status(const Participant& link, const std::string& edge_id)>& work) {
+  return WithFoundRig(
+      address, [&work](const FoundRig& found) { return work(found.link, found.rig.edge_id()); });
 }
 
 Status SendOrder(RigCommander& rig, const Command& order, const RigAddress& address) {

@@ -5,6 +5,7 @@
 
 #include "common/base/status.h"
 #include "common/messages/messages.h"
+#include "common/transport/participant.h"
 #include "ground/subscriber/rig_commander.h"
 
 namespace CLI {
@@ -26,6 +27,11 @@ void AddRigAddress(CLI::App& command, RigAddress& address);
 /// RigCommander::AwaitStatus and of `work`.
 Status WithRig(const RigAddress& address,
                const std::function<Status(RigCommander& rig, const EdgeStatus& status)>& work);
+
+/// The same for work that speaks with the rig by itself.
+Status WithLink(
+    const RigAddress& address,
+    const std::function<Status(const Participant& link, const std::string& edge_id)>& work);
 
 /// Sends the order and prints the rig's answer. kUnavailable if it refuses or fails, with its
 /// reason.

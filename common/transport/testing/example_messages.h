@@ -17,6 +17,27 @@ Frame GoodFrame() {
 template <typename Message>
 Message Good();
 template <>
+inline RecordingRequest Good() {
+  return {.asker = 5,
+          .number = 6,
+          .kind = RecordingRequestKind::kRead,
+          .recording = "scan.mcap",
+          .offset = 7,
+          .length = 8};
+}
+template <>
+inline RecordingPiece Good() {
+  return {.asker = 5,
+          .number = 6,
+          .outcome = RecordingOutcome::kDone,
+          .recording = "scan.mcap",
+          .size = 70,
+          .written = CaptureTime(std::chrono::seconds(1'700'000'000)),
+          .offset = 7,
+          .bytes = {1, 2, 3},
+          .crc = 9};
+}
+template <>
 inline EncodedDepthFrame Good() {
   auto frame = GoodFrame<EncodedDepthFrame>();
   frame.depth_scale = 1000.0;

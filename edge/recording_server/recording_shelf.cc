@@ -1,0 +1,84 @@
+#include "edge/recording_server/recording_shelf.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "common/recording/byte_stream.h"
+#include "common/recording/mcap_records.h"
+#include "common/recording/recording_parts.h"
+
+namespace isotherm {
+namespace {
+
+/// Enters what is known of a file without opening it.
+void Describe(const ListedRecording& recording, RecordingPiece& piece) {
+  std::error_code error;
+  piece.recording = recording.path.filename().string();
+  const std::uintmax_t size = std::filesystem::file_size(recording.path, error);
+  piece.size = error ? 0 : size;
+  const auto written = std::chrono::file_clock::to_sys(recording.written).time_since_epoch();
+  piece.written = CaptureTime(std::chrono::duration_cast<Nanoseconds>(written));
+  if (IsBeingWritten(recording.path)) piece.outcome = RecordingOutcome::kBeingWritten;
+}
+
+}  // namespace
+
+RecordingPiece RecordingShelf::Answer(const RecordingRequest& request) {
+  RecordingPiece piece{.asker = request.asker,
+                       .number = request.number,
+                       .recording = request.recording,
+                       .offset = request.offset};
+  if (request.kind == RecordingRequestKind::kList) {
+    List(request, piece);
+  } else {
+    Read(request, piece);
+  }
+  return piece;
+}
+
+void RecordingShelf::List(const RecordingRequest& request, RecordingPiece& piece) {
+  // Whoever asks for one place after the other sees one list.
+  if (request.offset == 0) Look();
+  if (request.offset >= listed_.size()) {
+    piece.outcome = RecordingOutcome::kNotThere;
+    return;
+  }
+  Describe(listed_[static_cast<std::size_t>(request.offset)], piece);
+}
+
+const ListedRecording* RecordingShelf::Find(const std::string& name) const {
+  const auto found = std::ranges::find_if(listed_, [&name](const ListedRecording& recording) {
+    return recording.path.filename() == name;
+  });
+  return found == listed_.end() ? nullptr : &*found;
+}
+
+void RecordingShelf::Read(const RecordingRequest& request, RecordingPiece& piece) {
+  const ListedRecording* recording = Find(request.recording);
+  if (recording == nullptr) {
+    Look();
+    recording = Find(request.recording);
+  }
+  if (recording == nullptr) {
+    piece.outcome = RecordingOutcome::kNotThere;
+    return;
+  }
+  Describe(*recording, piece);
+  if (piece.outcome != RecordingOutcome::kDone) return;
+  piece.outcome = RecordingOutcome::kUnreadable;
+  const Result<std::unique_ptr<ByteSource>> source = OpenFileSource(recording->path);
+  if (!source || request.offset > (*source)->size() ||
+      request.length > (*source)->size() - request.offset) {
+    return;
+  }
+  std::vector<std::uint8_t> bytes(request.length);
+  if (!(*source)->Read(request.offset, bytes).ok()) return;
+  piece.outcome = RecordingOutcome::kDone;
+  piece.crc = mcap::Crc32(bytes);
+  if (request.kind == RecordingRequestKind::kRead) piece.bytes = std::move(bytes);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,126 @@
+// isotherm fetch, from a rig that has scanned: over the link, broken off and gone on with.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+
+#include "common/testing/temporary_directory.h"
+#include "tests/support/programs.h"
+#include "tests/support/small_scan.h"
+
+namespace isotherm::system_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::TemporaryDirectory;
+
+std::string Get(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class FetchTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WriteSmallScan(scan_, 4);
+    WriteSmallRig(rig_, 4);
+  }
+
+  /// A rig that scans for `seconds` and then stays.
+  Command Edge(int seconds, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"--recording", scan_,
+                                          "--rig",       rig_,
+                                          "--domain",    std::to_string(OwnDomain()),
+                                          "--record",    recordings_.path().string() + "/",
+                                          "--set",       "source.loops=" + std::to_string(seconds)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return {EdgeDaemon(), arguments, {}};
+  }
+  Command Fetch(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"fetch", "--domain", std::to_string(OwnDomain()), "-o",
+                                          here_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return {Tool(), arguments, {}};
+  }
+  /// Returns the only recording of the rig.
+  std::filesystem::path Recording() const {
+    std::filesystem::path only;
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(recordings_.path())) {
+      only = entry.path();
+      ++files;
+    }
+    EXPECT_EQ(files, 1);
+    return only;
+  }
+
+  const TemporaryDirectory folder_;
+  const TemporaryDirectory recordings_;
+  const std::filesystem::path scan_ = folder_.path() / "source.mcap";
+  const std::filesystem::path rig_ = folder_.path() / "rig.textproto";
+  const std::filesystem::path here_ = folder_.path() / "here";
+};
+
+TEST_F(FetchTest, ARecordingIsListedWaitedForAndFetchedWhole) {
+  Process edge(Edge(4));
+  ASSERT_TRUE(edge.WaitForOutput("recording to", kPatience)) << edge.output();
+  const Finished list = RunToEnd(Fetch({}), kPatience);
+  EXPECT_EQ(list.status, 0) << list.output;
+  EXPECT_THAT(list.output, HasSubstr("being written"));
+  const std::string name = Recording().filename();
+  EXPECT_EQ(RunToEnd(Fetch({name}), kPatience).status, 65) << "the scan goes on";
+  ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start", kPatience)) << edge.output();
+
+  const Finished fetched = RunToEnd(Fetch({"--newest"}), kPatience);
+  EXPECT_EQ(fetched.status, 0) << fetched.output;
+  EXPECT_THAT(fetched.output, HasSubstr(name));
+  EXPECT_TRUE(Get(here_ / name) == Get(Recording()));
+  EXPECT_TRUE(ReadRecording(here_ / name).complete);
+  EXPECT_THAT(RunToEnd(Fetch({}), kPatience).output, HasSubstr("here"));
+  EXPECT_EQ(RunToEnd(Fetch({"no-such.mcap"}), kPatience).status, 66);
+}
+
+TEST_F(FetchTest, AnAttemptThatIsKilledIsGoneOnWith) {
+  // Two seconds for what there is.
+  Process edge(Edge(4, {"--set", "link.expert.fetch_mb_per_s=0.6"}));
+  ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start", kPatience)) << edge.output();
+  const std::filesystem::path whole = Recording();
+  const std::filesystem::path part = here_ / (whole.filename().string() + ".part");
+  {
+    Process killed(Fetch({"--all"}));
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    std::error_code missing;
+    const auto size = [&] {
+      const auto bytes = std::filesystem::file_size(part, missing);
+      return missing ? 0 : bytes;
+    };
+    while (size() < std::filesystem::file_size(whole) / 3) {
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline) << killed.output();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    killed.Signal(SIGKILL);
+    EXPECT_EQ(killed.WaitForExit(kPatience), 128 + SIGKILL);
+  }
+  ASSERT_TRUE(std::filesystem::exists(part));
+  EXPECT_THAT(RunToEnd(Fetch({}), kPatience).output, HasSubstr("partly here"));
+  const Finished again = RunToEnd(Fetch({"--all"}), kPatience);
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_TRUE(Get(here_ / whole.filename()) == Get(whole));
+  EXPECT_FALSE(std::filesystem::exists(part));
+}
+
+TEST_F(FetchTest, ARigThatGivesNothingAwayIsNotWaitedForForEver) {
+  Process edge(Edge(1, {"--set", "link.expert.fetch_mb_per_s=0"}));
+  ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start", kPatience)) << edge.output();
+  const Finished list = RunToEnd(Fetch({}), kPatience);
+  EXPECT_EQ(list.status, 69) << list.output;
+  EXPECT_THAT(list.output, HasSubstr("has not answered"));
+}
+
+}  // namespace
+}  // namespace isotherm::system_test
