@@ -25,7 +25,7 @@ enum class RecordingRequestKind : std::uint8_t {
 /// Asks a rig for a recording, or for what there is.
 struct RecordingRequest {
   std::uint64_t asker = 0;   ///< Any number that no other one uses; answers repeat it.
-  std::uint64_t number = 0;  ///< Of the request; its answer repeats it.
+  std::uint64_t number = 0;  ///< The request's; its answer repeats it.
   RecordingRequestKind kind = RecordingRequestKind::kList;
   std::string recording{};   ///< A name as the list has it.
   std::uint64_t offset = 0;  ///< Byte; in the list: place.
@@ -47,10 +47,10 @@ struct RecordingPiece {
   std::uint64_t number = 0;
   RecordingOutcome outcome = RecordingOutcome::kDone;
   std::string recording{};
-  std::uint64_t size = 0;  ///< Of the whole recording, bytes.
+  std::uint64_t size = 0;  ///< The whole recording's, bytes.
   CaptureTime written{};   ///< When it was written last.
   std::uint64_t offset = 0;
-  std::vector<std::uint8_t> bytes{};  ///< Of a read.
+  std::vector<std::uint8_t> bytes{};  ///< A read's; otherwise empty.
   std::uint32_t crc = 0;              ///< CRC-32 (zlib) of what was asked for.
 };
 

@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "common/base/sync_folder.h"
@@ -79,6 +81,31 @@ class FileSink final : public ByteSink {
   const std::filesystem::path path_;
 };
 
+class LockedFileEnd final : public FileEnd {
+ public:
+  LockedFileEnd(FileDescriptor fd, std::filesystem::path path)
+      : fd_(std::move(fd)), path_(std::move(path)) {}
+
+  Status Replace(std::uint64_t offset, std::span<const std::uint8_t> bytes) override {
+    // Cut last: on a disk that is full nothing is gone.
+    while (!bytes.empty()) {
+      const ssize_t written =
+          ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return FromErrno(errno, "write", path_);
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      offset += static_cast<std::uint64_t>(written);
+    }
+    if (::ftruncate(fd_.get(), static_cast<off_t>(offset)) != 0)
+      return FromErrno(errno, "cut", path_);
+    return ::fsync(fd_.get()) == 0 ? OkStatus() : FromErrno(errno, "sync", path_);
+  }
+
+ private:
+  FileDescriptor fd_;
+  const std::filesystem::path path_;
+};
+
 class FileSource final : public ByteSource {
  public:
   FileSource(FileDescriptor fd, std::filesystem::path path, std::uint64_t size)
@@ -106,6 +133,17 @@ class FileSource final : public ByteSource {
   const std::uint64_t size_;
 };
 
+/// Says, as long as this process lives, that the file is being written (IsBeingWritten). A file
+/// system that has no locks goes without. Whoever looks whether it is holds the lock for an
+/// instant.
+void SayItIsWritten(int file) {
+  constexpr int kTries = 50;
+  for (int i = 0; i < kTries; ++i) {
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path) {
@@ -124,26 +162,20 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
   FileDescriptor fd(::open(path.c_str(), flags, 0644));
   if (fd.get() < 0) return Err(FromErrno(errno, "create", path));
   if (!device) {
-    // Says, as long as this process lives, that the file is being written (IsBeingWritten). A file
-    // system that has no locks goes without.
-    static_cast<void>(::flock(fd.get(), LOCK_EX | LOCK_NB));
+    SayItIsWritten(fd.get());
     SyncFolder(directory);
   }
   return std::make_unique<FileSink>(std::move(fd), path);
 }
 
-Result<std::unique_ptr<ByteSink>> ReopenFileSink(const std::filesystem::path& path,
-                                                 std::uint64_t size) {
-  FileDescriptor fd(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
+Result<std::unique_ptr<FileEnd>> LockFileEnd(const std::filesystem::path& path) {
+  FileDescriptor fd(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) return Err(FromErrno(errno, "open", path));
   if (::flock(fd.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     return Err(FailedPrecondition(
         fmt::format("{} is still being written by another program", path.string())));
   }
-  const bool is_there = ::ftruncate(fd.get(), static_cast<off_t>(size)) == 0 &&
-                        ::lseek(fd.get(), 0, SEEK_END) == static_cast<off_t>(size);
-  if (!is_there) return Err(FromErrno(errno, "cut", path));
-  return std::make_unique<FileSink>(std::move(fd), path);
+  return std::make_unique<LockedFileEnd>(std::move(fd), path);
 }
 
 Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path) {

@@ -33,9 +33,18 @@ class ByteSource {
 /// or pipe.
 Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path);
 
-/// A file that nobody writes, cut to its first `size` bytes, behind which it goes on.
-Result<std::unique_ptr<ByteSink>> ReopenFileSink(const std::filesystem::path& path,
-                                                 std::uint64_t size);
+/// The end of a file that is there, for who replaces it. Locked against writers as long as it
+/// lives.
+class FileEnd {
+ public:
+  virtual ~FileEnd() = default;
+  /// Makes `bytes` the last ones of the file, behind its first `offset`, and returns when that
+  /// survives a power cut. After a failure the file is as long as before, or longer.
+  virtual Status Replace(std::uint64_t offset, std::span<const std::uint8_t> bytes) = 0;
+};
+
+/// Fails with kFailedPrecondition while another program writes the file.
+Result<std::unique_ptr<FileEnd>> LockFileEnd(const std::filesystem::path& path);
 
 /// A regular file, read in pieces. Its size is taken when it is opened.
 Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path);

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "common/recording/mcap_file_index.h"
@@ -52,7 +55,8 @@ class Lister {
       case Opcode::kMetadata:
         return AddMetadata(record, record.offset);
       case Opcode::kMessage:
-        return FailedPrecondition("it has messages outside chunks, as Isotherm writes none");
+      case Opcode::kAttachment:
+        return FailedPrecondition("it has records that Isotherm does not write");
       default:
         return OkStatus();  // Definitions are in the chunks, too.
     }
@@ -121,12 +125,25 @@ class Lister {
         tail_.resize(begin + static_cast<std::size_t>(record->length()));
         ISOTHERM_RETURN_IF_ERROR(source_.Read(record->offset, std::span(tail_).subspan(begin)));
       } else if (record->opcode != Opcode::kMessageIndex) {
+        ISOTHERM_RETURN_IF_ERROR(CheckCut(*record));
         break;
       }
       offset = record->end();
     }
     cut_ = source_.size() - offset;
     return OkStatus();
+  }
+
+  /// Refuses to cut off what this program cannot read: only what is not whole, and a summary.
+  Status CheckCut(const RecordPosition& record) const {
+    bool is_unknown = record.opcode == Opcode::kMessage || record.opcode == Opcode::kAttachment;
+    if (record.opcode == Opcode::kChunk) {
+      const std::optional<ChunkHeader> header = ChunkHeaderAt(source_, record);
+      is_unknown = header && (header->uncompressed_size > kMaxChunkBytes ||
+                              !IsSupportedCompression(header->compression));
+    }
+    if (!is_unknown) return OkStatus();
+    return FailedPrecondition("its last part is none that Isotherm writes, and would be lost");
   }
 
   const ByteSource& source_;
@@ -154,31 +171,29 @@ void Describe(const FileIndex& file, SummaryContent& content) {
 }  // namespace
 
 Result<std::uint64_t> CompleteFile(const std::filesystem::path& path) {
-  const Result<std::unique_ptr<ByteSource>> source = OpenFileSource(path);
-  if (!source) return Err(source.error());
   const auto fail = [&path](const Status& status) {
     return Err(Status(status.code(),
                       fmt::format("{} cannot be completed: {}", path.string(), status.message())));
   };
+  // Locked before it is read: a writer that ends meanwhile would be cut off.
+  const Result<std::unique_ptr<FileEnd>> file_end = LockFileEnd(path);
+  if (!file_end) return fail(file_end.error());
+  const Result<std::unique_ptr<ByteSource>> source = OpenFileSource(path);
+  if (!source) return fail(source.error());
   const Result<FileIndex> file = ReadFileIndex(**source);
   if (!file) return fail(file.error());
   if (file->complete) return std::uint64_t{0};
   if (file->segments.empty()) return fail(FailedPrecondition("nothing in it is whole"));
+  const Segment& last = file->segments.back();
   Lister lister(**source);
-  if (const Status listed = lister.ListUpTo(file->segments.back()); !listed.ok())
-    return fail(listed);
+  if (const Status listed = lister.ListUpTo(last); !listed.ok()) return fail(listed);
   Describe(*file, lister.content());
   Bytes end = lister.tail();
   Append(DataEnd{.data_section_crc = 0}, end);
-  const std::uint64_t data_end = file->segments.back().offset + file->segments.back().length;
+  const std::uint64_t data_end = last.offset + last.length;
   AppendSummary(lister.content(), data_end, end);
-  const Result<std::unique_ptr<ByteSink>> sink = ReopenFileSink(path, data_end);
-  if (!sink) return fail(sink.error());
-  Status written = (*sink)->Write(end);
-  if (written.ok()) written = (*sink)->Sync();
-  const Status closed = (*sink)->Close();
-  if (!written.ok()) return fail(written);
-  if (!closed.ok()) return fail(closed);
+  const Status replaced = (*file_end)->Replace(data_end, end);
+  if (!replaced.ok()) return fail(replaced);
   return lister.cut();
 }
 

@@ -7,11 +7,11 @@
 
 namespace isotherm::mcap {
 
-/// What a summary tells of a file.
+/// Holds what a summary tells of a file.
 struct SummaryContent {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
-  Statistics statistics;  ///< Of the messages; numbers of schemas and channels are filled in.
+  Statistics statistics;  ///< They count messages; numbers of schemas and channels are filled in.
   std::vector<MetadataIndex> metadata_indexes;
   std::vector<ChunkIndex> chunk_indexes;
 };

@@ -331,5 +331,47 @@ TEST_F(MessageRoundTripTest, FeedbackArrivesAsItWasWritten) {
   EXPECT_EQ(feedback.next_gain_m2, 0.25);
 }
 
+TEST_F(MessageRoundTripTest, ARequestForARecordingArrivesAsItWasWritten) {
+  const RecordingRequest sent{.asker = UINT64_MAX,
+                              .number = 2,
+                              .kind = RecordingRequestKind::kChecksum,
+                              .recording = "edge-20231114-221320-0123abcd.mcap",
+                              .offset = std::uint64_t{1} << 40U,
+                              .length = kMaxChecksumBytes};
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  EXPECT_EQ(received->edge_id, "edge-1");
+  EXPECT_EQ(received->message.asker, sent.asker);
+  EXPECT_EQ(received->message.number, sent.number);
+  EXPECT_EQ(received->message.kind, sent.kind);
+  EXPECT_EQ(received->message.recording, sent.recording);
+  EXPECT_EQ(received->message.offset, sent.offset);
+  EXPECT_EQ(received->message.length, sent.length);
+}
+
+TEST_F(MessageRoundTripTest, APieceOfARecordingArrivesAsItWasWritten) {
+  RecordingPiece sent{.asker = 1,
+                      .number = UINT64_MAX,
+                      .outcome = RecordingOutcome::kBusy,
+                      .recording = "scan.mcap",
+                      .size = 17'000'000'000,
+                      .written = CaptureTimeFromNanoseconds(1'700'000'000'123'456'789),
+                      .offset = 16'999'900'000,
+                      .crc = 0xCBF43926};
+  sent.bytes.assign(kMaxPieceBytes, 0xAB);
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  const RecordingPiece& piece = received->message;
+  EXPECT_EQ(piece.asker, sent.asker);
+  EXPECT_EQ(piece.number, sent.number);
+  EXPECT_EQ(piece.outcome, sent.outcome);
+  EXPECT_EQ(piece.recording, sent.recording);
+  EXPECT_EQ(piece.size, sent.size);
+  EXPECT_EQ(piece.written, sent.written);
+  EXPECT_EQ(piece.offset, sent.offset);
+  EXPECT_EQ(piece.bytes, sent.bytes);
+  EXPECT_EQ(piece.crc, sent.crc);
+}
+
 }  // namespace
 }  // namespace isotherm

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <isotherm_control.h>
 #include <isotherm_frames.h>
+#include <isotherm_recordings.h>
 
 #include <algorithm>
 #include <array>
@@ -185,6 +186,16 @@ bool IsSound(const Feedback& feedback) {
 bool IsSound(const Hello& hello) {
   return IsOneOf(hello.role, 2) && IsShort(hello.host, 256) && IsShort(hello.software_version, 256);
 }
+bool IsSound(const RecordingRequest& request) {
+  return IsOneOf(request.kind, 3) && IsShort(request.recording, 256) &&
+         request.offset <= std::uint64_t{1} << 60U &&
+         request.length <= (request.kind == RecordingRequestKind::kChecksum ? 4U << 20U : 65'536U);
+}
+bool IsSound(const RecordingPiece& piece) {
+  return IsOneOf(piece.outcome, 5) && IsShort(piece.recording, 256) &&
+         piece.bytes.size() <= 65'536 && ToNanoseconds(piece.written) >= 0 &&
+         piece.size <= std::uint64_t{1} << 60U && piece.offset <= std::uint64_t{1} << 60U;
+}
 
 struct Outcome {
   std::uint64_t undecodable = 0;  ///< Refused by the middleware.
@@ -324,6 +335,12 @@ TEST_F(ReceivePathTest, F60AnyBytesAsAThermalFrame) {
 TEST_F(ReceivePathTest, F60AnyBytesAsARig) { Run<RigDescription>(isotherm_wire_Rig_desc); }
 TEST_F(ReceivePathTest, F60AnyBytesAsExternalOdometry) {
   Run<ExternalOdometrySample>(isotherm_wire_ExternalOdometry_desc);
+}
+TEST_F(ReceivePathTest, F60AnyBytesAsARequestForARecording) {
+  Run<RecordingRequest>(isotherm_wire_RecordingRequest_desc);
+}
+TEST_F(ReceivePathTest, F60AnyBytesAsAPieceOfARecording) {
+  Run<RecordingPiece>(isotherm_wire_RecordingPiece_desc);
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsAStatus) { Run<EdgeStatus>(isotherm_wire_EdgeStatus_desc); }
 TEST_F(ReceivePathTest, F60AnyBytesAsACommand) { Run<Command>(isotherm_wire_Command_desc); }

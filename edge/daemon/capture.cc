@@ -120,8 +120,8 @@ class Scan {
 };
 
 CaptureEnd Scan::Run() {
-  const auto& [options, session, source, counters, health, publisher, leaving, is_scanning, clock,
-               stop] = parts_;
+  const auto& [options, session, source, counters, health, publisher, leaving, is_scanning, on_idle,
+               clock, stop] = parts_;
   pipeline_.StartReceiving();
   NotifyReady(fmt::format("capturing from {}", source.name()));
   LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
@@ -171,6 +171,7 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
         LOG(Edge, Info)
             << (ordered ? "the scan has ended as ordered" : "the source has ended")
             << "; waiting for the order to start another scan, or for a signal to leave";
+        parts_.on_idle();
       }
     }
     Pause(parts_.stop, stop_limits::kTick);

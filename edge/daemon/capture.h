@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <stop_token>
 
@@ -35,6 +36,7 @@ struct CaptureParts {
   Publisher& publisher;
   Leaving& leaving;
   std::atomic<bool>& is_scanning;  ///< Kept up to date for those who wait for the end.
+  std::function<void()> on_idle;   ///< Called when the scan has ended and another is waited for.
   const Clock& clock;
   const std::stop_token& stop;
 };

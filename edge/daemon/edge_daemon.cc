@@ -7,13 +7,16 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/base/processor_time.h"
 #include "common/doubts/calibration_doubts.h"
 #include "common/doubts/doubts.h"
 #include "common/options/text_proto.h"
+#include "common/recording/recording_parts.h"
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
 #include "common/transport/join_domain.h"
@@ -134,6 +137,7 @@ struct Link {
   std::unique_ptr<Participant> participant;
   std::unique_ptr<RecordingServer> server;  ///< Null without recordings.
   std::unique_ptr<Publisher> publisher;
+  std::jthread completing;  ///< Recordings of processes before; nobody waits for it but the end.
 };
 
 /// Gives away recordings from now on. A scan does not end because it cannot.
@@ -181,6 +185,28 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
   return OkStatus();
 }
 
+/// Gives the files that the processes before have left an index. A file that is not completed when
+/// the process leaves is readable as it is.
+std::jthread CompleteInBackground(const InterruptedScan& before) {
+  std::vector<std::filesystem::path> files;
+  for (const RecordedRun& run : before.runs) {
+    if (files.empty() || files.back() != run.file) files.push_back(run.file);
+  }
+  // Of a file of hours all of the disk may have to be looked at.
+  return std::jthread([files = std::move(files)](const std::stop_token& stop) {
+    NameThread("complete");
+    for (const std::filesystem::path& file : files) {
+      if (stop.stop_requested()) return;
+      const Result<std::uint64_t> cut = CompleteRecording(file);
+      if (cut) {
+        LOG(Edge, Info) << file.string() << " has broken off, and is completed";
+      } else {
+        LOG(Edge, Warning) << cut.error().message() << "; it is readable as it is";
+      }
+    }
+  });
+}
+
 /// Opens the source and runs a scan of it. Joins the link if that has not been done.
 CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& environment,
                    const Clock& clock, const std::optional<Rig>& calibration,
@@ -216,11 +242,14 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
     LOG(Edge, Error) << spool.error().message();
     return {.status = kExitRecording};
   }
+  const auto on_idle = [&before, &link] {
+    if (before) link.completing = CompleteInBackground(*before);
+  };
   const Status begun = link.publisher->BeginSession(
       DescribeRig(options, session), before ? PublishedBy(*before, session) : SessionBefore());
   if (!begun.ok()) return {.status = Fail(begun)};
   return Capture({options, session, **source, counters, health, *link.publisher, leaving,
-                  link.is_scanning, clock, stop},
+                  link.is_scanning, on_idle, clock, stop},
                  std::move(*spool));
 }
 

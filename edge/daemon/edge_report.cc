@@ -81,7 +81,9 @@ std::string LackingText(const EdgeStatus& status) {
 /// Says how many arrived of those that left the rig; the line above has the others. The ground's
 /// summary calls the difference missing.
 std::string ReceiptText(const StreamReceipt& receipt, std::uint64_t published) {
-  return fmt::format("ground received {} of {} published", receipt.received, published);
+  // Of a scan that was interrupted it may have frames that nobody has recorded.
+  return fmt::format("ground received {} of {} published", receipt.received,
+                     std::max(published, receipt.received));
 }
 
 }  // namespace
@@ -98,7 +100,7 @@ double RateMeter::Update(std::uint64_t count, SteadyTime now) {
 
 StreamStatus ToStreamStatus(const SensorCounters& counters, double rate_hz) {
   StreamStatus status;
-  // So that it is published and dropped together.
+  // Captured is what was published and what was dropped: numbers that a restart has left out, too.
   status.captured = counters.captured + counters.lost_by_restart;
   status.published = counters.published;
   status.rate_hz = rate_hz;

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/frame/sensor_name.h"
@@ -26,10 +27,15 @@ std::uint64_t FirstNumber(const EdgeSession& session, Sensor sensor) {
 }
 
 /// Compares what a recording gives back, but for rounding and for the thermal scale, which is that
-/// of a camera that may not be there yet.
-bool IsSameRig(std::optional<Rig> recorded, const std::optional<Rig>& rig) {
-  if (!recorded || !rig) return recorded.has_value() == rig.has_value();
+/// of a camera that may not be there yet. Without a file the rig is what the cameras say of
+/// themselves: one that is missing on one side says nothing.
+bool IsSameRig(std::optional<Rig> recorded, std::optional<Rig> rig, bool has_file) {
+  if (!recorded || !rig) return !has_file || recorded.has_value() == rig.has_value();
   recorded->thermal_scale = rig->thermal_scale;
+  if (!has_file) {
+    if (!recorded->depth || !rig->depth) recorded->depth = rig->depth = std::nullopt;
+    if (!recorded->thermal || !rig->thermal) recorded->thermal = rig->thermal = std::nullopt;
+  }
   return google::protobuf::util::MessageDifferencer::ApproximatelyEquals(ToProto(*recorded),
                                                                          ToProto(*rig));
 }
@@ -53,8 +59,8 @@ std::string OtherCamera(const RecordingDescription::Metadata& recorded,
 }
 
 /// Says why the scan cannot be gone on with; empty: it can.
-std::string Obstacle(const InterruptedScan& scan, const EdgeSession& session) {
-  if (!IsSameRig(scan.rig, session.rig)) return "the calibration is another one";
+std::string Obstacle(const InterruptedScan& scan, const EdgeSession& session, bool has_file) {
+  if (!IsSameRig(scan.rig, session.rig, has_file)) return "the calibration is another one";
   return OtherCamera(scan.metadata, session.cameras);
 }
 
@@ -68,7 +74,8 @@ std::optional<InterruptedScan> FindScanToResume(const EdgeOptions& options,
       FindInterruptedScan(options.spool().record(), options.link().edge_id(), session.time,
                           FromSeconds(options.spool().resume_s()));
   if (!scan) return std::nullopt;
-  if (const std::string obstacle = Obstacle(*scan, session); !obstacle.empty()) {
+  const bool has_file = !options.source().rig_file().empty();
+  if (const std::string obstacle = Obstacle(*scan, session, has_file); !obstacle.empty()) {
     LOG(Edge, Warning) << "the scan in " << scan->path.string()
                        << " was interrupted, and another one is begun: " << obstacle;
     return std::nullopt;
@@ -101,7 +108,9 @@ void CountBefore(const InterruptedScan& before, const EdgeSession& session,
     const std::uint64_t recorded = before.Of(sensor).frames;
     counters.Count(sensor, FrameFate::kCaptured, recorded);
     counters.Count(sensor, FrameFate::kPublished, recorded);
-    counters.Count(sensor, FrameFate::kLostByRestart, FirstNumber(session, sensor) - recorded);
+    // Of a camera that has never been there nothing is lost.
+    if (recorded > 0)
+      counters.Count(sensor, FrameFate::kLostByRestart, FirstNumber(session, sensor) - recorded);
   }
 }
 

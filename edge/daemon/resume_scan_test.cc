@@ -19,7 +19,7 @@ CameraDescription Camera(Sensor sensor, std::string serial) {
   camera.serial = std::move(serial);
   camera.width = 2;
   camera.height = 1;
-  camera.rate_hz = 30.0;
+  camera.rate_hz = 10.0;
   return camera;
 }
 
@@ -28,6 +28,7 @@ class ResumeScanTest : public ::testing::Test {
  protected:
   ResumeScanTest() {
     options_.mutable_source()->set_kind(CAMERAS);
+    options_.mutable_source()->set_rig_file("rig.textproto");
     options_.mutable_spool()->set_record(folder_.path() / "scan.mcap");
     Rig rig;
     rig.depth =
@@ -60,7 +61,21 @@ class ResumeScanTest : public ::testing::Test {
       ASSERT_TRUE(file.writer->Write(frame, std::nullopt).ok());
     }
     ASSERT_TRUE(file.writer->Flush().ok());
-    std::filesystem::copy_file(file.path, options_.spool().record());
+    Copy(file.path, options_.spool().record(), 10s);
+  }
+  /// Leaves a file of which nothing but metadata was on the disk.
+  void WriteKilledAtOnce(const std::filesystem::path& path, const EdgeSession& session) const {
+    const testing::TemporaryDirectory elsewhere;
+    RecordingFiles files(
+        {elsewhere.path() / "scan.mcap", 500ms, session.rig, RecordingMetadata(options_, session)});
+    const RecordingFile file = files.Next().value();
+    Copy(file.path, path, 13s);
+  }
+  static void Copy(const std::filesystem::path& from, const std::filesystem::path& to,
+                   Nanoseconds written) {
+    std::filesystem::copy_file(from, to);
+    const std::chrono::sys_time<Nanoseconds> time((kStart + written).time_since_epoch());
+    std::filesystem::last_write_time(to, std::chrono::file_clock::from_sys(time));
   }
   bool GoesOn() const { return FindScanToResume(options_, again_).has_value(); }
 
@@ -107,6 +122,42 @@ TEST_F(ResumeScanTest, ACameraThatIsAnotherOneBeginsAnotherScanAndOneThatIsNotTh
   EXPECT_TRUE(GoesOn());
   again_.cameras.push_back(Camera(Sensor::kThermal, "T2"));
   EXPECT_FALSE(GoesOn());
+}
+
+TEST_F(ResumeScanTest, GoesOnAlsoWhenTheProcessBeforeWasKilledBeforeItHadRecordedAnything) {
+  const std::optional<InterruptedScan> first = FindScanToResume(options_, again_);
+  ASSERT_TRUE(first);
+  Resume(*first, again_);
+  WriteKilledAtOnce(folder_.path() / "scan-2.mcap", again_);
+  EdgeSession third = before_;
+  third.time = kStart + 14s;
+  const std::optional<InterruptedScan> scan = FindScanToResume(options_, third);
+  ASSERT_TRUE(scan);
+  Resume(*scan, third);
+  EXPECT_EQ(third.session(), before_.session());
+  EXPECT_GT(third.first_numbers[0], again_.first_numbers[0] + 10);
+}
+
+TEST_F(ResumeScanTest, AStreamThatNeverWasHasLostNothing) {
+  const std::optional<InterruptedScan> scan = FindScanToResume(options_, again_);
+  ASSERT_TRUE(scan);
+  Resume(*scan, again_);
+  EXPECT_GT(again_.first_numbers[1], 0U) << "it may have begun just before";
+  FrameCounters counters;
+  CountBefore(*scan, again_, counters);
+  EXPECT_EQ(counters.Get(Sensor::kThermal).lost_by_restart, 0U);
+}
+
+TEST_F(ResumeScanTest, WithoutACalibrationACameraThatComesLateDoesNotMatter) {
+  std::filesystem::remove(options_.spool().record());
+  options_.mutable_source()->clear_rig_file();
+  before_.rig->thermal.reset();
+  before_.rig->T_thermal_depth.reset();
+  WriteKilled();
+  again_.rig.reset();
+  EXPECT_TRUE(GoesOn());
+  options_.mutable_source()->set_rig_file("rig.textproto");
+  EXPECT_FALSE(GoesOn()) << "then it is the file that has changed";
 }
 
 TEST_F(ResumeScanTest, AReplayWithItsOwnTimesAndAnOptionThatSaysSoBeginAnotherScan) {

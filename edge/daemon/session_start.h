@@ -31,8 +31,8 @@ struct EdgeSession {
   std::optional<Rig> rig;            ///< As published and recorded.
   double rig_thermal_delay_s = 0.0;  ///< As calibrated.
   KernelClock clock{};
-  std::uint64_t resumed_session = 0;  ///< That of a process before, which goes on; 0: a new one.
-  std::array<std::uint64_t, 2> first_numbers{};  ///< Of the frames to come, by Sensor.
+  std::uint64_t resumed_session = 0;  ///< It goes on from a process before; 0: a new one.
+  std::array<std::uint64_t, 2> first_numbers{};  ///< The next frames', by Sensor.
 
   /// One per start of a scan.
   std::uint64_t session() const {

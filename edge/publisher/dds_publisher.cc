@@ -85,8 +85,8 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   if (session_ == receipt.session && accepted) {
     receipt_.Set(receipt);
     receipt_at_ = now;
-    depth_.window().OnReceipt(receipt.depth.handled, now);
-    thermal_.window().OnReceipt(receipt.thermal.handled, now);
+    depth_.OnReceipt(receipt.depth, now);
+    thermal_.OnReceipt(receipt.thermal, now);
   }
   changed_.notify_all();
 }

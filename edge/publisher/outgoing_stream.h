@@ -22,6 +22,8 @@ class OutgoingStream {
   void BeginSession(const PublishedBefore& before) {
     counts_ = {.published = before.frames, .next_frame_number = before.next_frame_number};
     published_before_ = before.next_frame_number;
+    number_limit_ = before.number_limit;
+    counted_before_ = before.frames;
     published_ = FrameNumberSet(kMaxGaps);
     window_.BeginSession();
     sent_.BeginSession(before.number_limit);
@@ -34,6 +36,21 @@ class OutgoingStream {
     counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
   }
   void OnFailed() { ++counts_.failed; }
+  /// Enters what the ground says, once sent() has found that it can be true.
+  void OnReceipt(const StreamReceipt& receipt, SteadyTime now) {
+    window_.OnReceipt(receipt.handled, now);
+    if (number_limit_ == 0) return;
+    // Of the processes before the ground may have more than the recording: that was published, too.
+    std::uint64_t of_this = receipt.next - std::min(receipt.next, number_limit_);
+    for (const FrameRange& hole : receipt.holes) {
+      if (hole.last < number_limit_) continue;
+      of_this -= hole.last - std::max(hole.first, number_limit_) + 1;
+    }
+    const std::uint64_t of_those_before = receipt.received - std::min(receipt.received, of_this);
+    if (of_those_before <= counted_before_) return;
+    counts_.published += of_those_before - counted_before_;
+    counted_before_ = of_those_before;
+  }
   /// Enters that a frame was sent from the recording. Returns whether it was the first time.
   bool OnBackfilled(std::uint64_t number) {
     if (number < published_before_ || !published_.Add(number)) return false;
@@ -64,7 +81,10 @@ class OutgoingStream {
   static constexpr std::size_t kMaxGaps = 4096;
 
   StreamPublished counts_;
-  std::uint64_t published_before_ = 0;  ///< Numbers below are those of another process.
+  // Of the processes before that had the same session.
+  std::uint64_t published_before_ = 0;  ///< Numbers below count as published.
+  std::uint64_t number_limit_ = 0;      ///< All their numbers are below.
+  std::uint64_t counted_before_ = 0;    ///< Their part of counts_.published.
   FrameNumberSet published_{kMaxGaps};
   FlowWindow window_;
   PublishedStream sent_;

@@ -81,6 +81,11 @@ TEST_F(OutgoingStreamTest, ASessionThatGoesOnKnowsWhatTheProcessBeforeMayHaveSen
   EXPECT_FALSE(stream_.OnBackfilled(40)) << "it counts as published already";
   Publish(130);
   EXPECT_EQ(stream_.counts().published, 91U);
+  // The ground has four frames that the recording does not have, and not all of what it has.
+  stream_.OnReceipt({.next = 131, .handled = 100, .received = 80, .holes = {{104, 129}}}, now_);
+  EXPECT_EQ(stream_.counts().published, 91U);
+  stream_.OnReceipt({.next = 131, .handled = 131, .received = 95, .holes = {{104, 129}}}, now_);
+  EXPECT_EQ(stream_.counts().published, 95U) << "94 of those before, and one";
   EXPECT_EQ(Check(131, 105), std::nullopt);
 }
 

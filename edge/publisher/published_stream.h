@@ -15,7 +15,7 @@ namespace isotherm {
 /// it. Pure. Thread-compatible.
 class PublishedStream {
  public:
-  /// Of the numbers below `number_limit` another process may have published each.
+  /// Another process may have published each of the numbers below `number_limit`.
   void BeginSession(std::uint64_t number_limit) {
     *this = {};
     next_ = count_ = number_limit;

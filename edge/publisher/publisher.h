@@ -32,7 +32,7 @@ struct StreamPublished {
 
 /// Counts what a process before has published of a stream of a session that goes on.
 struct PublishedBefore {
-  std::uint64_t frames = 0;             ///< Those that can be sent again.
+  std::uint64_t frames = 0;             ///< They can be sent again.
   std::uint64_t next_frame_number = 0;  ///< One above the highest of them.
   std::uint64_t number_limit = 0;       ///< No number that it may have published is as high.
 };

@@ -19,8 +19,7 @@ void Describe(const ListedRecording& recording, RecordingPiece& piece) {
   piece.recording = recording.path.filename().string();
   const std::uintmax_t size = std::filesystem::file_size(recording.path, error);
   piece.size = error ? 0 : size;
-  const auto written = std::chrono::file_clock::to_sys(recording.written).time_since_epoch();
-  piece.written = CaptureTime(std::chrono::duration_cast<Nanoseconds>(written));
+  piece.written = recording.WrittenAt();
   if (IsBeingWritten(recording.path)) piece.outcome = RecordingOutcome::kBeingWritten;
 }
 

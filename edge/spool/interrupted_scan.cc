@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
-#include <iterator>
-#include <limits>
 #include <memory>
+#include <system_error>
 #include <utility>
-#include <variant>
 
+#include "common/base/log.h"
+#include "common/frame/sensor_name.h"
 #include "common/recording/recording.h"
 #include "common/recording/recording_parts.h"
 #include "common/recording/recording_topics.h"
 #include "edge/spool/recording_listing.h"
+#include "edge/spool/recording_survey.h"
 
 namespace isotherm {
 namespace {
@@ -25,16 +25,15 @@ using namespace std::chrono_literals;
 constexpr std::array kSensors = {Sensor::kDepth, Sensor::kThermal};
 /// Recordings that are opened in search of the rig's newest. Rigs that share a folder are few.
 constexpr std::size_t kMaxOpened = 16;
-/// The places of frames that are looked up: one per interval, and no more than so many in a file.
-constexpr Nanoseconds kPlaceInterval = 10s;
-constexpr std::int64_t kMaxPlacesInFile = 128;
-/// Items that are read in search of a frame of each camera.
-constexpr int kMaxItemsPerPlace = 512;
 /// More than any camera has; a stream whose rate is not known may have had it.
 constexpr double kMaxRate_hz = 200.0;
-/// The rate at the end is measured over this long at least.
-constexpr Nanoseconds kMinRateTime = 200ms;
 constexpr std::uint64_t kSpareNumbers = 8;
+/// A process that is killed has published this much at most that it has not recorded: half a
+/// second, and as much again for a disk that is slow. Longer: the ground takes the numbers for a
+/// jump.
+constexpr Nanoseconds kMinPassed = 1s;
+/// A hundred years of a camera: higher numbers are damage, and the ground refuses them.
+constexpr std::uint64_t kMaxNumber = std::uint64_t{1} << 38U;
 
 /// Returns the value of the scan's metadata; empty if there is none.
 std::string ScanValue(const RecordingInfo& info, const char* key) {
@@ -61,159 +60,89 @@ std::uint64_t SessionOf(const RecordingInfo& info) { return NumberOf(info, kSess
 
 ScanPart PartOf(const RecordingInfo& info) {
   // Times and numbers that cannot be are damage, and count for nothing.
-  constexpr std::uint64_t kMaxNumber = std::uint64_t{1} << 62U;
-  const auto number = [&info](const char* key) {
-    return NumberOf(info, key) <= kMaxNumber ? NumberOf(info, key) : 0;
+  const auto number = [&info](const char* key, std::uint64_t max) {
+    return NumberOf(info, key) <= max ? NumberOf(info, key) : 0;
   };
   return {ScanValue(info, kEdgeIdKey),
           SessionOf(info),
-          CaptureTimeFromNanoseconds(static_cast<std::int64_t>(number(kBegunKey))),
-          {number(kFirstNumberKeys[0]), number(kFirstNumberKeys[1])}};
+          CaptureTimeFromNanoseconds(
+              static_cast<std::int64_t>(number(kBegunKey, recording::kMaxRecordedNanoseconds))),
+          {number(kFirstNumberKeys[0], kMaxNumber), number(kFirstNumberKeys[1], kMaxNumber)}};
 }
 
-std::uint64_t CountOf(const RecordingInfo& info, Sensor sensor) {
-  const std::string_view topic =
-      sensor == Sensor::kDepth ? recording::kDepthTopic : recording::kThermalTopic;
-  const auto count = info.messages_by_topic.find(std::string(topic));
-  return count == info.messages_by_topic.end() ? 0 : count->second;
-}
-
-/// Says whose frame an item is, and which.
-struct FramePoint {
-  Sensor sensor{};
-  std::uint64_t number = 0;
-  CaptureTime time{};
+/// An opened file of a scan.
+struct OpenPart {
+  ListedRecording listed;
+  std::unique_ptr<RecordingReader> reader;
 };
 
-std::optional<FramePoint> PointOf(const RecordedItem& item) {
-  if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
-    const FrameHeader& header = depth->frame.header;
-    return FramePoint{Sensor::kDepth, header.frame_number, header.capture_time};
-  }
-  if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
-    const FrameHeader& header = thermal->frame.header;
-    return FramePoint{Sensor::kThermal, header.frame_number, header.capture_time};
+/// Returns a file of the recording that the rig wrote last; nullopt if there is none, or none that
+/// was written lately.
+std::optional<OpenPart> OpenNewest(const std::vector<ListedRecording>& recordings,
+                                   const std::string& edge_id, CaptureTime oldest) {
+  std::size_t opened = 0;
+  for (const ListedRecording& listed : recordings) {
+    // Opening a file that breaks off takes time, also when nothing is gone on with.
+    if (listed.WrittenAt() < oldest || opened++ == kMaxOpened) break;
+    Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(listed.path);
+    if (reader && ScanValue((*reader)->info(), kEdgeIdKey) == edge_id)
+      return OpenPart{listed, std::move(*reader)};
   }
   return std::nullopt;
 }
 
-/// Finds out which frames one file has, by samples, and exactly at the end of each stream.
-class FileSurvey {
- public:
-  FileSurvey(std::filesystem::path path, RecordingReader& reader)
-      : path_(std::move(path)), reader_(reader) {
-    const RecordingInfo& info = reader_.info();
-    if (!info.start || !info.end) return;
-    const Nanoseconds length = *info.end - *info.start;
-    const Nanoseconds interval = std::max(kPlaceInterval, length / kMaxPlacesInFile);
-    for (CaptureTime time = *info.start; time <= *info.end; time += interval) AddPlaces(time);
-    for (const Sensor sensor : kSensors) FindEnd(sensor, interval);
-  }
-
-  /// Enters what was found.
-  void AddTo(InterruptedScan& scan) const {
-    for (const Sensor sensor : kSensors) {
-      const auto index = static_cast<std::size_t>(sensor);
-      const std::vector<FramePoint>& places = places_[index];
-      RecordedStream& stream = scan.streams[index];
-      if (places.empty() || places.front().number < stream.next) continue;
-      stream.frames += CountOf(reader_.info(), sensor);
-      stream.next = last_[index].number + 1;
-      if (rate_hz_[index] > 0.0) stream.rate_hz = rate_hz_[index];
-      scan.newest = std::max(scan.newest, last_[index].time);
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::uint64_t end = i + 1 < places.size() ? places[i + 1].number : stream.next;
-        scan.runs.push_back({path_, sensor, {places[i].number, end - 1}, places[i].time});
-      }
-    }
-  }
-
- private:
-  /// Returns the next frame; nullopt at the end, and where the file cannot be read.
-  std::optional<FramePoint> NextFrame(int& items_left) {
-    while (items_left-- > 0) {
-      const Result<std::optional<RecordedItem>> item = reader_.Next();
-      if (!item) continue;  // One message; the next may be right.
-      if (!*item) break;
-      if (const std::optional<FramePoint> point = PointOf(**item)) return point;
-    }
-    return std::nullopt;
-  }
-
-  /// Notes the first frame of each stream from `time` on.
-  void AddPlaces(CaptureTime time) {
-    if (!reader_.Seek(time).ok()) return;
-    std::array<bool, 2> found{};
-    int items_left = kMaxItemsPerPlace;
-    while (!found[0] || !found[1]) {
-      const std::optional<FramePoint> point = NextFrame(items_left);
-      if (!point) return;
-      const auto index = static_cast<std::size_t>(point->sensor);
-      if (std::exchange(found[index], true)) continue;
-      std::vector<FramePoint>& places = places_[index];
-      if (places.empty() || places.back().number < point->number) places.push_back(*point);
-    }
-  }
-
-  /// Finds the last frame of a stream, which lies no further than an interval behind its last
-  /// place, and the rate there.
-  void FindEnd(Sensor sensor, Nanoseconds interval) {
-    const auto index = static_cast<std::size_t>(sensor);
-    if (places_[index].empty()) return;
-    const FramePoint first = places_[index].back();
-    last_[index] = first;
-    if (!reader_.Seek(first.time).ok()) return;
-    int items_left = std::numeric_limits<int>::max();
-    while (const std::optional<FramePoint> point = NextFrame(items_left)) {
-      if (point->time > first.time + interval + kPlaceInterval) break;
-      if (point->sensor == sensor && point->number > last_[index].number) last_[index] = *point;
-    }
-    const FramePoint& last = last_[index];
-    const auto before = std::find_if(
-        places_[index].rbegin(), places_[index].rend(),
-        [&](const FramePoint& place) { return last.time - place.time >= kMinRateTime; });
-    if (before == places_[index].rend()) return;
-    rate_hz_[index] =
-        static_cast<double>(last.number - before->number) / ToSeconds(last.time - before->time);
-  }
-
-  const std::filesystem::path path_;
-  RecordingReader& reader_;
-  // By Sensor.
-  std::array<std::vector<FramePoint>, 2> places_;  ///< Ascending.
-  std::array<FramePoint, 2> last_{};
-  std::array<double, 2> rate_hz_{};
-};
-
-/// Returns the rig's newest recording; nullptr if there is none.
-std::unique_ptr<RecordingReader> OpenNewest(const std::vector<ListedRecording>& candidates,
-                                            const std::string& edge_id, ListedRecording& newest) {
-  for (std::size_t i = 0; i < std::min(candidates.size(), kMaxOpened); ++i) {
-    Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidates[i].path);
-    if (!reader || ScanValue((*reader)->info(), kEdgeIdKey) != edge_id) continue;
-    newest = candidates[i];
-    return std::move(*reader);
-  }
-  return nullptr;
-}
-
-/// An opened file of a scan.
-struct Part {
-  std::filesystem::path path;
-  std::unique_ptr<RecordingReader> reader;
-};
-
-/// Returns the files of the scan that can be read, the first one first.
-std::vector<Part> PartsOf(const InterruptedScan& scan, std::vector<ListedRecording> candidates) {
-  std::ranges::sort(candidates, {}, &ListedRecording::part);
-  std::vector<Part> parts;
-  for (const ListedRecording& candidate : candidates) {
-    if (candidate.first != scan.path || candidate.part > scan.parts) continue;
-    Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(candidate.path);
-    if (reader && SessionOf((*reader)->info()) == scan.last.session)
-      parts.push_back({candidate.path, std::move(*reader)});
+/// Returns the files of the recording that are of the same scan and can be read, the first one
+/// first.
+std::vector<OpenPart> PartsOf(const OpenPart& one, std::vector<ListedRecording> recordings) {
+  std::ranges::sort(recordings, {}, &ListedRecording::part);
+  std::vector<OpenPart> parts;
+  for (const ListedRecording& listed : recordings) {
+    if (listed.first != one.listed.first) continue;
+    Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(listed.path);
+    if (reader && SessionOf((*reader)->info()) == SessionOf(one.reader->info()))
+      parts.push_back({listed, std::move(*reader)});
   }
   return parts;
+}
+
+/// Returns what the cameras are said to give, frames per second; 0: it is not said.
+double NominalRate(const RecordingInfo& info, Sensor sensor) {
+  const auto cameras = info.metadata.find("cameras");
+  if (cameras == info.metadata.end()) return 0.0;
+  const auto mode = cameras->second.find(std::string(NameOf(sensor)) + "_mode");
+  if (mode == cameras->second.end()) return 0.0;
+  double rate_hz = 0.0;  // "640x480@30"
+  const std::size_t at = mode->second.find('@');
+  if (at == std::string::npos) return 0.0;
+  const char* const end = mode->second.data() + mode->second.size();
+  return std::from_chars(mode->second.data() + at + 1, end, rate_hz).ec == std::errc() ? rate_hz
+                                                                                       : 0.0;
+}
+
+/// Enters what a file has, and what it says of cameras and calibration.
+void AddTo(InterruptedScan& scan, const OpenPart& part) {
+  const RecordingSurvey survey(*part.reader);
+  const RecordingInfo& info = part.reader->info();
+  for (const Sensor sensor : kSensors) {
+    const auto index = static_cast<std::size_t>(sensor);
+    const StreamSurvey& found = survey.Of(sensor);
+    RecordedStream& stream = scan.streams.at(index);
+    if (found.places.empty() || found.places.front().number < stream.next) continue;
+    stream.frames += found.frames;
+    stream.next = found.last.number + 1;
+    // A camera that was away for a part of the time has a lower rate than that of its frames.
+    stream.rate_hz = std::max(found.rate_hz, NominalRate(info, sensor));
+    scan.newest = std::max(scan.newest, found.last.time);
+    for (std::size_t i = 0; i < found.places.size(); ++i) {
+      const FramePlace& place = found.places[i];
+      const std::uint64_t end =
+          i + 1 < found.places.size() ? found.places[i + 1].number : stream.next;
+      scan.runs.push_back({part.listed.path, sensor, {place.number, end - 1}, place.time});
+    }
+  }
+  // The newest may have been left before anything but metadata was on the disk.
+  if (Result<Rig> rig = part.reader->ReadRig()) scan.rig = std::move(*rig);
+  scan.metadata = info.metadata;
 }
 
 }  // namespace
@@ -233,43 +162,42 @@ std::uint64_t InterruptedScan::NextNumber(Sensor sensor, CaptureTime now) const 
   const double rate_hz =
       stream.rate_hz > 0.0 ? std::min(stream.rate_hz, kMaxRate_hz) : kMaxRate_hz / 2.0;
   const auto later = [&](std::uint64_t number, CaptureTime since) {
-    const double passed_s = std::max(0.0, ToSeconds(now - since));
+    const double passed_s = std::max(ToSeconds(kMinPassed), ToSeconds(now - since));
     return number + kSpareNumbers + static_cast<std::uint64_t>(std::ceil(rate_hz * passed_s));
   };
   const std::uint64_t by_frames = later(stream.next, newest);
   // The newest process may have been killed before it had recorded anything.
-  const std::uint64_t first = last.first_numbers[static_cast<std::size_t>(sensor)];
+  const std::uint64_t first = last.first_numbers.at(static_cast<std::size_t>(sensor));
   return first > stream.next ? std::max(by_frames, later(first, last.begun)) : by_frames;
 }
 
 std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
                                                    const std::string& edge_id, CaptureTime now,
                                                    Nanoseconds max_age) {
-  if (record == "off" || max_age <= Nanoseconds(0) || IsDevice(record)) return std::nullopt;
-  const std::vector<ListedRecording> candidates = ListRecordings(record);
-  ListedRecording newest;
-  const std::unique_ptr<RecordingReader> reader = OpenNewest(candidates, edge_id, newest);
-  if (reader == nullptr || reader->info().complete || IsBeingWritten(newest.path))
-    return std::nullopt;
-  InterruptedScan scan;
-  scan.last = PartOf(reader->info());
-  scan.path = newest.first;
-  scan.parts = newest.part;
-  scan.metadata = reader->info().metadata;
-  if (Result<Rig> rig = reader->ReadRig()) scan.rig = std::move(*rig);
-  if (scan.last.session == 0) return std::nullopt;
+  if (max_age <= Nanoseconds(0) || IsDevice(record)) return std::nullopt;
+  const std::vector<ListedRecording> recordings = ListRecordings(record);
+  const std::optional<OpenPart> found = OpenNewest(recordings, edge_id, now - max_age);
+  if (!found || SessionOf(found->reader->info()) == 0) return std::nullopt;
+  // Which part was written last says nothing: others may have been completed since.
+  const std::vector<OpenPart> parts = PartsOf(*found, recordings);
+  const bool has_ended = parts.empty() || parts.back().reader->info().complete ||
+                         parts.back().listed.WrittenAt() < now - max_age ||
+                         IsBeingWritten(parts.back().listed.path);
+  if (has_ended) return std::nullopt;
 
-  const std::vector<Part> parts = PartsOf(scan, candidates);
-  std::optional<CaptureTime> end;
-  for (const Part& part : parts) {
-    const std::optional<CaptureTime>& of_part = part.reader->info().end;
-    if (of_part) end = std::max(end.value_or(*of_part), *of_part);
+  InterruptedScan scan;
+  scan.last = PartOf(parts.back().reader->info());
+  scan.path = parts.back().listed.first;
+  scan.parts = parts.back().listed.part;
+  for (const OpenPart& part : parts) AddTo(scan, part);
+  const std::uint64_t next = std::max(scan.Of(Sensor::kDepth).next, scan.Of(Sensor::kThermal).next);
+  if (next == 0) return std::nullopt;
+  if (next > kMaxNumber || now < scan.newest) {
+    LOG(Spool, Warning) << scan.path.string() << " was interrupted, and is not gone on with: "
+                        << (next > kMaxNumber ? "its frame numbers cannot be"
+                                              : "the clock was set back since its newest frame");
+    return std::nullopt;
   }
-  // Before the survey, which takes time.
-  if (!end || now < *end || now - *end > max_age) return std::nullopt;
-  for (const Part& part : parts) FileSurvey(part.path, *part.reader).AddTo(scan);
-  const bool has_frames = scan.Of(Sensor::kDepth).next + scan.Of(Sensor::kThermal).next > 0;
-  if (!has_frames || now < scan.newest) return std::nullopt;
   return scan;
 }
 

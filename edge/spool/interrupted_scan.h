@@ -23,8 +23,9 @@ inline constexpr std::string_view kScanMetadata = "scan";
 struct ScanPart {
   std::string edge_id;
   std::uint64_t session = 0;
-  CaptureTime begun{};                           ///< The process that wrote the file.
-  std::array<std::uint64_t, 2> first_numbers{};  ///< Of that process's frames, by Sensor.
+  CaptureTime begun{};  ///< The process that wrote the file.
+  std::array<std::uint64_t, 2>
+      first_numbers{};  ///< Numbers of that process's frames begin here, by Sensor.
 };
 std::map<std::string, std::string> ToMetadata(const ScanPart& part);
 
@@ -33,7 +34,7 @@ struct RecordedRun {
   std::filesystem::path file;
   Sensor sensor{};
   FrameRange frames;
-  CaptureTime time{};  ///< Of the first.
+  CaptureTime time{};  ///< The first one's.
 };
 
 /// Tells what a scan had recorded of one stream.
@@ -51,7 +52,7 @@ struct InterruptedScan {
   CaptureTime newest{};                   ///< Frame.
   std::array<RecordedStream, 2> streams;  ///< By Sensor.
   std::vector<RecordedRun> runs;          ///< File by file, and ascending in each stream.
-  ScanPart last;                          ///< Of the newest file, which may have no frames.
+  ScanPart last;                          ///< The newest file's, which may have no frames.
   std::optional<Rig> rig;                 ///< As it says.
   RecordingDescription::Metadata metadata;
 
@@ -65,8 +66,9 @@ struct InterruptedScan {
 };
 
 /// Returns the newest scan of `edge_id` among the recordings that `record` names (see
-/// RecordingPath), if it was interrupted, nobody writes it any more, and its newest frame is not
-/// older than `max_age` at `now`. A file that cannot be read is passed over.
+/// RecordingPath), if it was interrupted, nobody writes it any more, it was written last no longer
+/// than `max_age` before `now`, a time of the wall clock, and its frames lie before that. A file
+/// that cannot be read is passed over.
 std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
                                                    const std::string& edge_id, CaptureTime now,
                                                    Nanoseconds max_age);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/recording/recording.h"
+#include "common/recording/recording_parts.h"
 #include "common/testing/temporary_directory.h"
 #include "edge/spool/recorded_frame_reader.h"
 
@@ -27,7 +28,7 @@ EncodedImage SmallImage() {
   return {.encoding = Encoding::kRaw16, .width = 2, .height = 1, .payload = {1, 2, 3, 4}};
 }
 
-/// What a file has of each stream, by Sensor.
+/// Holds what a file has of each stream, by Sensor.
 using Numbers = std::array<std::set<std::uint64_t>, 2>;
 
 /// A folder with recordings of which the processes were killed, or not.
@@ -40,7 +41,7 @@ class InterruptedScanTest : public ::testing::Test {
     Nanoseconds begin{0};      ///< After kScanStart.
     Nanoseconds depth_ends{};  ///< No frames of this camera after that; 0: to the end.
     std::array<std::uint64_t, 2> first_numbers{};
-    std::uint64_t left_out = 0;  ///< Every so-manieth depth number; 0: none.
+    std::uint64_t left_out = 0;  ///< Every depth number that is divisible by it; 0: none.
   };
 
   RecordingFile Begin(const std::filesystem::path& path, const Content& content) {
@@ -92,13 +93,20 @@ class InterruptedScanTest : public ::testing::Test {
       EXPECT_TRUE(file.writer->Flush().ok());
       std::filesystem::copy_file(file.path, folder_.path() / name);
     }
+    SetWritten(name, content.begin + length);
     std::filesystem::remove(elsewhere);
     return numbers;
+  }
+  void SetWritten(const std::string& name, Nanoseconds after_start) const {
+    const std::chrono::sys_time<Nanoseconds> time((kScanStart + after_start).time_since_epoch());
+    std::filesystem::last_write_time(folder_.path() / name,
+                                     std::chrono::file_clock::from_sys(time));
   }
   void Complete(const std::string& name, const Content& content, Nanoseconds length) {
     const RecordingFile file = Begin(folder_.path() / name, content);
     Write(*file.writer, content, length);
     EXPECT_TRUE(file.writer->Close().ok());
+    SetWritten(name, content.begin + length);
   }
   std::optional<InterruptedScan> Find(Nanoseconds after_start) const {
     return FindInterruptedScan(folder_.path() / "scan.mcap", "rig7", kScanStart + after_start, 60s);
@@ -217,6 +225,46 @@ TEST_F(InterruptedScanTest, ACameraThatWasLostLongBeforeKeepsItsLastNumber) {
   EXPECT_EQ(scan->Of(Sensor::kDepth).next, *numbers[0].rbegin() + 1);
   EXPECT_EQ(scan->newest, kScanStart + 44'975ms);
   ExpectThatRunsLeadTo(numbers, *scan, folder_.path() / "scan.mcap");
+}
+
+TEST_F(InterruptedScanTest, TheHighestPartSaysWhetherTheScanHasEndedWhicheverWasWrittenLast) {
+  Kill("scan.mcap", {}, 5s);
+  Complete("scan-2.mcap", {.begin = 6s, .first_numbers = {500, 500}}, 1s);
+  SetWritten("scan.mcap", 9s);
+  EXPECT_FALSE(Find(10s)) << "its first part was touched";
+  Kill("scan-3.mcap", {.begin = 8s, .first_numbers = {700, 700}}, 1s);
+  ASSERT_TRUE(CompleteRecording(folder_.path() / "scan.mcap"));
+  const std::optional<InterruptedScan> scan = Find(10s);
+  ASSERT_TRUE(scan) << "its first part was completed";
+  EXPECT_EQ(scan->parts, 3);
+  SetWritten("scan-3.mcap", -1h);
+  EXPECT_FALSE(Find(10s)) << "old, whatever happened to the others";
+}
+
+TEST_F(InterruptedScanTest, ACameraThatWasAwayForAWhileHasTheRateThatItIsSaidToHave) {
+  const std::filesystem::path elsewhere = elsewhere_.path() / "scan.mcap";
+  {
+    RecordingFiles files(
+        {elsewhere,
+         500ms,
+         std::nullopt,
+         {{std::string(kScanMetadata), ToMetadata({"rig7", kSession, kScanStart, {}})},
+          {"cameras", {{"thermal_mode", "382x288@80"}}}}});
+    const RecordingFile file = files.Next().value();
+    Write(*file.writer, {}, 5s);
+    ASSERT_TRUE(file.writer->Flush().ok());
+    std::filesystem::copy_file(elsewhere, folder_.path() / "scan.mcap");
+  }
+  SetWritten("scan.mcap", 5s);
+  const std::optional<InterruptedScan> scan = Find(7s);
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(scan->Of(Sensor::kThermal).rate_hz, 80.0);
+  EXPECT_NEAR(scan->Of(Sensor::kDepth).rate_hz, 1.0 / ToSeconds(kDepthPeriod), 0.5);
+}
+
+TEST_F(InterruptedScanTest, NumbersThatCannotBeAreNotGoneOnWith) {
+  Kill("scan.mcap", {.first_numbers = {0, std::uint64_t{1} << 40U}}, 5s);
+  EXPECT_FALSE(Find(6s));
 }
 
 TEST_F(InterruptedScanTest, AProcessThatWasKilledBeforeItsFirstFrameEndsNoScan) {

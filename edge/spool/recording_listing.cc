@@ -1,34 +1,52 @@
 #include "edge/spool/recording_listing.h"
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <optional>
-#include <regex>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 namespace isotherm {
 namespace {
 
-/// Returns what a file name means; nullopt: none. Of a recording with a name of its
-/// own, `stem` is that name; empty: any that RecordingPath makes.
+/// Returns whether `name` is one that RecordingPath makes.
+bool IsOwnName(std::string_view name) {
+  constexpr std::string_view kForm = "edge-00000000-000000-ffffffff";
+  const auto fits = [](char form, char c) {
+    const bool is_digit = c >= '0' && c <= '9';
+    if (form == '0') return is_digit;
+    return form == 'f' ? is_digit || (c >= 'a' && c <= 'f') : form == c;
+  };
+  return name.size() == kForm.size() && std::equal(kForm.begin(), kForm.end(), name.begin(), fits);
+}
+
+/// Returns the number of the part that a name ends with ("scan-2"), and cuts it off; 1: none.
+int TakePart(std::string_view& name) {
+  constexpr std::size_t kMaxDigits = 6;
+  const std::size_t dash = name.rfind('-');
+  if (dash == std::string_view::npos || name.size() - dash - 1 > kMaxDigits) return 1;
+  int part = 0;
+  const char* const end = name.data() + name.size();
+  const auto [at, error] = std::from_chars(name.data() + dash + 1, end, part);
+  if (error != std::errc() || at != end || part < 2) return 1;
+  name = name.substr(0, dash);
+  return part;
+}
+
+/// Returns what a file name means; nullopt: none. Of a recording with a name of its own, `stem` is
+/// that name; empty: any that RecordingPath makes.
 std::optional<ListedRecording> Parse(const std::filesystem::path& path, const std::string& stem) {
-  static const std::regex kOwn(R"((edge-\d{8}-\d{6}-[0-9a-f]{8})(?:-(\d{1,6}))?)");
-  static const std::regex kNumbered(R"((.*)-(\d{1,6}))");
   const std::string name = path.stem().string();
-  std::smatch match;
-  std::string base = name;
-  int part = 1;
-  if (stem.empty()) {
-    if (!std::regex_match(name, match, kOwn)) return std::nullopt;
-  } else if (name != stem && (!std::regex_match(name, match, kNumbered) || match[1] != stem)) {
-    return std::nullopt;
-  }
-  if (!match.empty()) {
-    base = match[1];
-    if (match[2].matched) part = std::stoi(match[2]);
-  }
-  return ListedRecording{path, path.parent_path() / (base + path.extension().string()), part, {}};
+  const auto is_base = [&stem](std::string_view base) {
+    return stem.empty() ? IsOwnName(base) : base == stem;
+  };
+  std::string_view base = name;
+  const int part = is_base(base) ? 1 : TakePart(base);
+  if (!is_base(base)) return std::nullopt;
+  const std::string first = std::string(base) + path.extension().string();
+  return ListedRecording{path, path.parent_path() / first, part, {}};
 }
 
 }  // namespace

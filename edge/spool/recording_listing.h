@@ -1,8 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "common/time/time_types.h"
 
 namespace isotherm {
 
@@ -12,6 +15,12 @@ struct ListedRecording {
   std::filesystem::path first;  ///< The recording's first file.
   int part = 1;
   std::filesystem::file_time_type written;
+
+  /// Returns the same on the wall clock.
+  CaptureTime WrittenAt() const {
+    const auto since = std::chrono::file_clock::to_sys(written).time_since_epoch();
+    return CaptureTime(std::chrono::duration_cast<Nanoseconds>(since));
+  }
 };
 
 /// Returns the files of all recordings that `record` names (see RecordingPath), the one that was

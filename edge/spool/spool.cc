@@ -46,10 +46,7 @@ Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options)
 void Spool::TakeOver(const InterruptedScan& before) {
   for (std::size_t i = 0; i < before.runs.size(); ++i) {
     const RecordedRun& run = before.runs[i];
-    if (i == 0 || run.file != before.runs[i - 1].file) {
-      recorded_frames_.BeginFile(run.file);
-      left_by_another_.push_back(run.file);
-    }
+    if (i == 0 || run.file != before.runs[i - 1].file) recorded_frames_.BeginFile(run.file);
     recorded_frames_.Add(run.sensor, run.frames, run.time);
   }
   closed_.depth_frames = before.Of(Sensor::kDepth).frames;
@@ -223,19 +220,9 @@ Status Spool::CloseFile() {
 
 Status Spool::Close() {
   if (IsRecording()) Note(CloseFile());
-  CompleteFilesBefore();
   UpdateCounters();
   UpdateStatus();
   return first_error_;
-}
-
-void Spool::CompleteFilesBefore() {
-  // Not sooner: a newest file that is complete says that the scan has ended.
-  for (const std::filesystem::path& path : std::exchange(left_by_another_, {})) {
-    if (const Result<std::uint64_t> cut = CompleteRecording(path); !cut) {
-      LOG(Spool, Warning) << cut.error().message() << "; it is readable as it is";
-    }
-  }
 }
 
 void Spool::Note(const Status& status) {

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
@@ -52,8 +51,8 @@ struct SpoolParts {
   FrameCounters& counters;
   /// Takes what stands at the beginning of the next files from now on. May be empty.
   std::function<void(const RigUpdate&)> update{};
-  /// What the recording has already of a scan that goes on; nullptr: of a new one. Need not outlive
-  /// the construction.
+  /// Tells what the recording has already of a scan that goes on; nullptr: a new one. Need not
+  /// outlive the construction.
   const InterruptedScan* before = nullptr;
 };
 
@@ -92,8 +91,7 @@ class Spool {
   /// To be called several times a second. `idle`: no frame came for a moment, so that nothing but
   /// this brings to the disk what is still collected.
   void Tend(bool idle);
-  /// Writes the summary, also of files that another process has left without. The first error of
-  /// the whole recording, or ok.
+  /// Writes the summary. The first error of the whole recording, or ok.
   Status Close();
 
   /// Returns what the recording has. Thread-safe, as long as the spool lives.
@@ -123,8 +121,6 @@ class Spool {
   void NoteWorks();
   /// The first error of closing it, or ok.
   Status CloseFile();
-  /// Completes the files that another process has left.
-  void CompleteFilesBefore();
   void UpdateCounters();
   void UpdateStatus();
   std::string Brief() const;
@@ -135,7 +131,6 @@ class Spool {
   std::optional<RecordingFile> file_;
   std::filesystem::path path_;
   RecordingStats closed_{};  ///< Sum over the files before.
-  std::vector<std::filesystem::path> left_by_another_;
   Status first_error_;
   Status problem_;  ///< Ok while all is well.
   bool at_reserve_ = false;

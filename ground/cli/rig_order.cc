@@ -22,7 +22,7 @@ void AddRigAddress(CLI::App& command, RigAddress& address) {
 
 namespace {
 
-/// What `work` needs of the link and of the rig that was found on it.
+/// Holds what `work` needs of the link and of the rig that was found on it.
 struct FoundRig {
   const Participant& link;
   RigCommander& rig;

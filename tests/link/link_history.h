@@ -154,6 +154,8 @@ class EdgeLink final : public Publisher {
   bool TakeReceipt(const Receipt& receipt) {
     if (streams_[0].sent().Check(receipt.depth) || streams_[1].sent().Check(receipt.thermal))
       return false;
+    streams_[0].OnReceipt(receipt.depth, clock_.SteadyNow());
+    streams_[1].OnReceipt(receipt.thermal, clock_.SteadyNow());
     receipt_ = receipt;
     receipt_at_ = clock_.SteadyNow();
     return true;

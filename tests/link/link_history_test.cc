@@ -9,6 +9,7 @@
 #include "common/testing/sanitizers.h"
 #include "common/testing/temporary_directory.h"
 #include "common/testing/test_seed.h"
+#include "edge/daemon/resume_scan.h"
 #include "tests/link/link_history.h"
 
 namespace isotherm::link_test {
@@ -25,7 +26,7 @@ constexpr Nanoseconds kFlushInterval = 1s;
 /// A ground that lost much, over a link that loses a tenth, has all after this at the latest.
 constexpr Nanoseconds kMaxEnd = 300s;
 
-/// What happened to the scan so far, whoever did it.
+/// Counts what happened to the scan so far, whoever did it.
 struct Account {
   std::array<std::map<std::uint64_t, CaptureTime>, 2> captured;  ///< By number.
   std::uint64_t sent_again = 0;
@@ -41,27 +42,25 @@ class EdgeEnd {
         random_(random),
         account_(account),
         link_(clock, way, random) {
-    const CaptureTime now = clock_.Now();
-    const auto before = FindInterruptedScan(record_, kRig, now, 60s);
-    session_ = before ? before->last.session : static_cast<std::uint64_t>(ToNanoseconds(now));
-    parts_ = before ? before->parts : 0;
+    options_.mutable_source()->set_kind(CAMERAS);
+    options_.mutable_source()->set_rig_file("rig.textproto");
+    options_.mutable_spool()->set_record(record_);
+    options_.mutable_link()->set_edge_id(kRig);
+    session_.time = clock_.Now();
+    session_.rig = ARig();
+    const auto before = FindScanToResume(options_, session_);
     SessionBefore published;
     if (before) {
-      for (const Sensor sensor : kSensors) {
-        next_.at(IndexOf(sensor)) = before->NextNumber(sensor, now);
-        lost_.at(IndexOf(sensor)) = next_.at(IndexOf(sensor)) - before->Of(sensor).frames;
-      }
-      const auto of = [&](Sensor sensor) {
-        return PublishedBefore{before->Of(sensor).frames, before->Of(sensor).next,
-                               next_.at(IndexOf(sensor))};
-      };
-      published = {of(Sensor::kDepth), of(Sensor::kThermal)};
+      Resume(*before, session_);
+      CountBefore(*before, session_, counters_);
+      published = PublishedBy(*before, session_);
+      parts_ = before->parts;
     }
-    part_ = {kRig, session_, now, next_};
+    next_ = session_.first_numbers;
     static_cast<void>(link_.BeginSession({}, published));
     spool_.emplace(SpoolParts{[this] { return NextFile(); },
                               [] { return Result<std::uint64_t>(std::uint64_t{1} << 40U); },
-                              options_,
+                              options_.spool(),
                               clock_,
                               counters_,
                               {},
@@ -97,7 +96,7 @@ class EdgeEnd {
       due += kPeriods.at(IndexOf(sensor));
       const std::uint64_t number = next_.at(IndexOf(sensor))++;
       const FrameHeader header{
-          .session = session_, .frame_number = number, .capture_time = clock_.Now()};
+          .session = session(), .frame_number = number, .capture_time = clock_.Now()};
       const bool is_new =
           account_.captured.at(IndexOf(sensor)).emplace(number, header.capture_time).second;
       EXPECT_TRUE(is_new) << "frame number " << number << " for a second frame";
@@ -111,23 +110,36 @@ class EdgeEnd {
   }
 
   EdgeLink& link() { return link_; }
-  std::uint64_t session() const { return session_; }
+  const EdgeLink& link() const { return link_; }
+  std::uint64_t session() const { return session_.session(); }
   bool is_settled() const { return backfill_->is_settled(); }
   std::uint64_t lacking() const { return backfill_->lacking(); }
   /// Returns how many numbers of the scan so far are said not to be recorded.
-  std::uint64_t lost(Sensor sensor) const { return lost_.at(IndexOf(sensor)); }
+  std::uint64_t lost(Sensor sensor) const { return counters_.Get(sensor).lost_by_restart; }
   int parts() const { return parts_; }
 
   bool is_narrow = false;  ///< Every second live frame finds no room.
 
  private:
+  static Rig ARig() {
+    Rig rig;
+    rig.depth =
+        CameraModel{.width = 64, .height = 48, .fx = 60.0, .fy = 60.0, .cx = 31.5, .cy = 23.5};
+    return rig;
+  }
+  /// As RecordingFiles, but quick: nothing waits for the disk.
   Result<RecordingFile> NextFile() {
     parts_ = NextFreePart(record_, parts_);
     const std::filesystem::path path = PartPath(record_, parts_);
     Result<std::unique_ptr<RecordingWriter>> writer =
         RecordingWriter::Create(path, {.flush_interval = kFlushInterval, .sync = false});
     if (!writer) return Err(writer.error());
-    const Status described = (*writer)->WriteMetadata(kScanMetadata, ToMetadata(part_));
+    Status described = (*writer)->Write(*session_.rig);
+    if (described.ok()) {
+      const auto metadata = RecordingMetadata(options_, session_);
+      const std::string name(kScanMetadata);
+      described = (*writer)->WriteMetadata(name, metadata.at(name));
+    }
     if (!described.ok()) return Err(described);
     return RecordingFile{path, std::move(*writer)};
   }
@@ -159,13 +171,11 @@ class EdgeEnd {
   std::mt19937& random_;
   Account& account_;
   EdgeLink link_;
-  std::uint64_t session_ = 0;
+  EdgeSession session_;
   int parts_ = 0;
-  ScanPart part_;
   std::array<std::uint64_t, 2> next_{};
-  std::array<std::uint64_t, 2> lost_{};
   std::array<Nanoseconds, 2> due_{};
-  SpoolOptions options_;
+  EdgeOptions options_;
   FrameCounters counters_;
   std::optional<Spool> spool_;
   std::optional<Backfill> backfill_;
@@ -290,6 +300,9 @@ class History {
       EXPECT_LE(nowhere, edge_->lost(sensor)) << "not recorded, and not counted";
       EXPECT_LE(nowhere, edges_ * (kFlushInterval / kPeriods.at(IndexOf(sensor)) + 1))
           << "more than was not flushed";
+      const PublisherStats stats = edge_->link().stats();
+      const StreamPublished& sent = sensor == Sensor::kDepth ? stats.depth : stats.thermal;
+      EXPECT_GE(sent.published, got.size()) << "the ground has what was not published";
       frames += captured.size();
     }
     // A receipt may be older than what is under way: some frames come twice, never many.

@@ -24,8 +24,8 @@ using ::testing::Not;
 using testing::TemporaryDirectory;
 
 constexpr int kKills = 4;
-/// What had been published when a process was killed and not been recorded: half a second until the
-/// recording is flushed, and as much again for a computer that is busy.
+/// Frames that had been published when a process was killed, and not recorded: half a second until
+/// the recording is flushed, and as much again for a computer that is busy.
 constexpr std::size_t kMaxNotRecorded = 45;
 
 bool ByNumber(const StoredFrame& a, const StoredFrame& b) {
@@ -58,13 +58,20 @@ class EdgeRestartTest : public ::testing::Test {
   }
   /// Starts the edge for the time number `start`, from 1 on.
   void StartEdge(int start, int loops, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"--recording",   scan_,
-                                          "--rig",         rig_,
-                                          "--domain",      std::to_string(OwnDomain()),
-                                          "--record",      record_,
-                                          "--exit-at-end", "--wait-for-ground",
-                                          "--set",         "link.expert.linger_s=60",
-                                          "--set",         "source.loops=" + std::to_string(loops)};
+    std::vector<std::string> arguments = {"--recording",
+                                          scan_,
+                                          "--rig",
+                                          rig_,
+                                          "--domain",
+                                          std::to_string(OwnDomain()),
+                                          "--record",
+                                          record_,
+                                          "--wait-for-ground",
+                                          "--set",
+                                          "link.expert.linger_s=60",
+                                          "--set",
+                                          "source.loops=" + std::to_string(loops)};
+    if (leaves_) arguments.emplace_back("--exit-at-end");
     arguments.insert(arguments.end(), more.begin(), more.end());
     edge_.emplace(Command{EdgeDaemon(), arguments, {}});
     start_ = start;
@@ -99,7 +106,7 @@ class EdgeRestartTest : public ::testing::Test {
     RecordingContent recorded;
     for (int part = 1; part <= parts; ++part) {
       const RecordingContent content = ReadRecording(PartPath(record_, part));
-      EXPECT_TRUE(content.complete) << "part " << part;
+      EXPECT_EQ(content.complete, part == parts) << "part " << part;
       EXPECT_FALSE(content.depth.empty()) << "part " << part;
       std::ranges::copy(content.depth, std::back_inserter(recorded.depth));
       std::ranges::copy(content.thermal, std::back_inserter(recorded.thermal));
@@ -134,6 +141,19 @@ class EdgeRestartTest : public ::testing::Test {
     if (HasFailure()) std::cout << ground_->output() << edge_->output();
   }
 
+  /// Completes a file that breaks off, and nothing of it is lost.
+  static void ExpectRepaired(const std::filesystem::path& file) {
+    const RecordingContent before = ReadRecording(file);
+    const Finished repaired = RunToEnd({Tool(), {"inspect", file, "--repair"}, {}, {}}, kPatience);
+    EXPECT_EQ(repaired.status, 0) << repaired.output;
+    EXPECT_THAT(repaired.output, HasSubstr("completed"));
+    const RecordingContent after = ReadRecording(file);
+    EXPECT_TRUE(after.complete);
+    EXPECT_TRUE(after.depth == before.depth && after.thermal == before.thermal);
+    const Finished again = RunToEnd({Tool(), {"inspect", file, "--repair"}, {}, {}}, kPatience);
+    EXPECT_THAT(again.output, HasSubstr("nothing to repair"));
+  }
+
   TemporaryDirectory folder_;
   const std::filesystem::path scan_ = folder_.path() / "source.mcap";
   const std::filesystem::path rig_ = folder_.path() / "rig.textproto";
@@ -142,6 +162,7 @@ class EdgeRestartTest : public ::testing::Test {
   std::optional<Process> ground_;
   std::optional<Process> edge_;
   int start_ = 0;
+  bool leaves_ = true;  ///< When the source has ended.
 };
 
 TEST_F(EdgeRestartTest, F33AnEdgeThatIsKilledAgainAndAgainGoesOnWithItsScan) {
@@ -157,6 +178,7 @@ TEST_F(EdgeRestartTest, F33AnEdgeThatIsKilledAgainAndAgainGoesOnWithItsScan) {
   EXPECT_THAT(ground_->output(), Not(HasSubstr("a second rig of the name")));
   EXPECT_THAT(ground_->output(), Not(HasSubstr("stream has jumped")));
   ExpectTheWholeScan(kKills + 1);
+  ExpectRepaired(record_);
 }
 
 TEST_F(EdgeRestartTest, F34ANewGroundGetsTheWholeScanOfAnEdgeThatWasStartedAgain) {
@@ -169,6 +191,23 @@ TEST_F(EdgeRestartTest, F34ANewGroundGetsTheWholeScanOfAnEdgeThatWasStartedAgain
   End();
   EXPECT_THAT(ground_->output(), HasSubstr("complete "));
   ExpectTheWholeScan(2);
+}
+
+TEST_F(EdgeRestartTest, F33AnEdgeThatStaysCompletesTheFilesThatBreakOff) {
+  ASSERT_NO_FATAL_FAILURE(StartGround("ground"));
+  StartEdge(1, 100);
+  ASSERT_NO_FATAL_FAILURE(KillEdge());
+  leaves_ = false;
+  StartEdge(2, 2);
+  EXPECT_TRUE(edge_->WaitForOutput("scan.mcap has broken off, and is completed", kPatience))
+      << edge_->output();
+  EXPECT_TRUE(ReadRecording(record_).complete);
+  EXPECT_TRUE(ReadRecording(PartPath(record_, 2)).complete);
+  edge_->Signal(SIGTERM);
+  EXPECT_EQ(edge_->WaitForExit(kPatience), 0) << edge_->output();
+  // What is complete is over: the next start begins a scan.
+  StartEdge(3, 1, {"--set", "link.expert.linger_s=1"});
+  EXPECT_THAT(edge_->output(), Not(HasSubstr("was interrupted")));
 }
 
 TEST_F(EdgeRestartTest, F33AnEdgeThatMayNotGoOnBeginsAnotherScan) {

@@ -107,7 +107,8 @@ TEST_F(ShortTypesTest, F60TheGroundSurvivesThemAndTheNextScanIsWhole) {
 
 TEST_F(ShortTypesTest, F60TheEdgeSurvivesThemAndTheNextScanIsWhole) {
   Process peer({SHORT_PEER, {Domain(), "edge"}, {}});
-  const std::vector<std::string> topics = {"3/command", "3/receipt", "3/feedback"};
+  const std::vector<std::string> topics = {"3/command", "3/receipt", "3/feedback",
+                                           "3/recording_request"};
   ExpectToSurviveTwice(Edge(), peer, topics);
   std::filesystem::remove(Path("edge.mcap"));
   Process edge(Edge());
