@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <string>
@@ -87,6 +88,8 @@ class LockedFileEnd final : public FileEnd {
       : fd_(std::move(fd)), path_(std::move(path)) {}
 
   Status Replace(std::uint64_t offset, std::span<const std::uint8_t> bytes) override {
+    struct stat before {};
+    if (::fstat(fd_.get(), &before) != 0) return FromErrno(errno, "look at", path_);
     // Cut last: on a disk that is full nothing is gone.
     while (!bytes.empty()) {
       const ssize_t written =
@@ -98,6 +101,9 @@ class LockedFileEnd final : public FileEnd {
     }
     if (::ftruncate(fd_.get(), static_cast<off_t>(offset)) != 0)
       return FromErrno(errno, "cut", path_);
+    // What is in the file is as old as before. Best effort.
+    const std::array<timespec, 2> times = {before.st_atim, before.st_mtim};
+    static_cast<void>(::futimens(fd_.get(), times.data()));
     return ::fsync(fd_.get()) == 0 ? OkStatus() : FromErrno(errno, "sync", path_);
   }
 
@@ -133,15 +139,16 @@ class FileSource final : public ByteSource {
   const std::uint64_t size_;
 };
 
-/// Says, as long as this process lives, that the file is being written (IsBeingWritten). A file
-/// system that has no locks goes without. Whoever looks whether it is holds the lock for an
-/// instant.
-void SayItIsWritten(int file) {
+/// Locks the file for its writer, which says as long as that lives that it is being written
+/// (IsBeingWritten). Returns false if it has another writer. A file system without locks goes
+/// without. Whoever asks holds a lock for an instant, too: tried again for a while. Not tuned.
+bool LockForWriter(int file) {
   constexpr int kTries = 50;
   for (int i = 0; i < kTries; ++i) {
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  return false;
 }
 
 }  // namespace
@@ -162,7 +169,7 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
   FileDescriptor fd(::open(path.c_str(), flags, 0644));
   if (fd.get() < 0) return Err(FromErrno(errno, "create", path));
   if (!device) {
-    SayItIsWritten(fd.get());
+    static_cast<void>(LockForWriter(fd.get()));  // It is new.
     SyncFolder(directory);
   }
   return std::make_unique<FileSink>(std::move(fd), path);
@@ -171,7 +178,7 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
 Result<std::unique_ptr<FileEnd>> LockFileEnd(const std::filesystem::path& path) {
   FileDescriptor fd(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) return Err(FromErrno(errno, "open", path));
-  if (::flock(fd.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (!LockForWriter(fd.get())) {
     return Err(FailedPrecondition(
         fmt::format("{} is still being written by another program", path.string())));
   }

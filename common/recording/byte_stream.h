@@ -34,12 +34,13 @@ class ByteSource {
 Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path);
 
 /// The end of a file that is there, for who replaces it. Locked against writers as long as it
-/// lives.
+/// lives. Thread-compatible.
 class FileEnd {
  public:
   virtual ~FileEnd() = default;
   /// Makes `bytes` the last ones of the file, behind its first `offset`, and returns when that
-  /// survives a power cut. After a failure the file is as long as before, or longer.
+  /// survives a power cut. When it was written last stays as it was. A disk that is full cuts
+  /// nothing off.
   virtual Status Replace(std::uint64_t offset, std::span<const std::uint8_t> bytes) = 0;
 };
 

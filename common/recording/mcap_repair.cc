@@ -170,7 +170,7 @@ void Describe(const FileIndex& file, SummaryContent& content) {
 
 }  // namespace
 
-Result<std::uint64_t> CompleteFile(const std::filesystem::path& path) {
+Result<std::optional<std::uint64_t>> CompleteFile(const std::filesystem::path& path) {
   const auto fail = [&path](const Status& status) {
     return Err(Status(status.code(),
                       fmt::format("{} cannot be completed: {}", path.string(), status.message())));
@@ -182,7 +182,7 @@ Result<std::uint64_t> CompleteFile(const std::filesystem::path& path) {
   if (!source) return fail(source.error());
   const Result<FileIndex> file = ReadFileIndex(**source);
   if (!file) return fail(file.error());
-  if (file->complete) return std::uint64_t{0};
+  if (file->complete) return std::optional<std::uint64_t>();
   if (file->segments.empty()) return fail(FailedPrecondition("nothing in it is whole"));
   const Segment& last = file->segments.back();
   Lister lister(**source);
@@ -194,7 +194,7 @@ Result<std::uint64_t> CompleteFile(const std::filesystem::path& path) {
   AppendSummary(lister.content(), data_end, end);
   const Status replaced = (*file_end)->Replace(data_end, end);
   if (!replaced.ok()) return fail(replaced);
-  return lister.cut();
+  return std::optional(lister.cut());
 }
 
 }  // namespace isotherm::mcap

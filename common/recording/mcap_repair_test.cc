@@ -36,7 +36,7 @@ class McapRepairTest : public McapTest {
 TEST_F(McapRepairTest, AFileThatWasNotClosedBecomesTheFileThatClosingWouldHaveMade) {
   WriteFile({10, 50, 200, 210, 400, 401, 402, 600}, /*close=*/false);
   Put(unfinished_);
-  const Result<std::uint64_t> cut = CompleteFile(path_);
+  const auto cut = CompleteFile(path_);
   ASSERT_TRUE(cut) << cut.error().message();
   EXPECT_EQ(*cut, 0U);
   Bytes expected = disk_->bytes;
@@ -54,7 +54,7 @@ TEST_F(McapRepairTest, EveryTruncationIsCompletedUpToItsLastWholeChunk) {
     const Bytes torn(whole.begin(), whole.begin() + static_cast<long>(size));
     const auto before = Read(torn);
     Put(torn);
-    const Result<std::uint64_t> cut = CompleteFile(path_);
+    const auto cut = CompleteFile(path_);
     if (!before || before->index.segments.empty()) {
       ASSERT_FALSE(cut) << size;
       ASSERT_EQ(Get(), torn);
@@ -80,7 +80,7 @@ TEST_F(McapRepairTest, MetadataBehindTheLastChunkIsKept) {
   Bytes torn = disk_->bytes;
   torn.insert(torn.end(), 100, 0xAB);
   Put(torn);
-  const Result<std::uint64_t> cut = CompleteFile(path_);
+  const auto cut = CompleteFile(path_);
   ASSERT_TRUE(cut) << cut.error().message();
   EXPECT_EQ(*cut, 100U);
   const auto after = Read(Get());
@@ -92,7 +92,7 @@ TEST_F(McapRepairTest, MetadataBehindTheLastChunkIsKept) {
 TEST_F(McapRepairTest, ACompleteFileAndOneThatThisDoesNotHelpStayAsTheyAre) {
   WriteFile({10, 50, 200, 210, 400, 401}, /*close=*/false);
   Put(disk_->bytes);
-  EXPECT_EQ(CompleteFile(path_).value(), 0U);
+  EXPECT_EQ(CompleteFile(path_).value(), std::nullopt);
   EXPECT_EQ(Get(), disk_->bytes);
 
   const auto complete = Read(unfinished_);
@@ -100,7 +100,7 @@ TEST_F(McapRepairTest, ACompleteFileAndOneThatThisDoesNotHelpStayAsTheyAre) {
   Bytes damaged = unfinished_;
   damaged[static_cast<std::size_t>(complete->index.segments[1].offset) + 6] ^= 0x40;  // Its length.
   Put(damaged);
-  const Result<std::uint64_t> refused = CompleteFile(path_);
+  const auto refused = CompleteFile(path_);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message(), HasSubstr("merge-recordings"));
   EXPECT_EQ(Get(), damaged);
@@ -113,7 +113,7 @@ TEST_F(McapRepairTest, AFileThatIsBeingWrittenIsLeftAlone) {
   WriteFile({10, 50}, /*close=*/false);
   ASSERT_TRUE((*sink)->Write(unfinished_).ok());
   EXPECT_TRUE(IsBeingWritten(path_));
-  const Result<std::uint64_t> refused = CompleteFile(path_);
+  const auto refused = CompleteFile(path_);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message(), HasSubstr("still being written"));
   EXPECT_EQ(Get(), unfinished_);

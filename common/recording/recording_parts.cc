@@ -40,7 +40,7 @@ bool IsBeingWritten(const std::filesystem::path& path) {
   return is_locked;
 }
 
-Result<std::uint64_t> CompleteRecording(const std::filesystem::path& path) {
+Result<std::optional<std::uint64_t>> CompleteRecording(const std::filesystem::path& path) {
   return mcap::CompleteFile(path);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "common/base/status.h"
 #include "common/recording/recording.h"
@@ -23,9 +24,9 @@ bool IsBeingWritten(const std::filesystem::path& path);
 
 /// Completes a recording whose writer did not (a power cut, a crash), in place: cuts off what is
 /// not whole at its end, and appends index and summary, so that any program for MCAP files reads
-/// it. Returns how many bytes were cut off; 0 also for one that is complete. kFailedPrecondition
+/// it. Returns how many bytes were cut off; nullopt for one that is complete. kFailedPrecondition
 /// for a file that is still written, or is damaged in the middle.
-Result<std::uint64_t> CompleteRecording(const std::filesystem::path& path);
+Result<std::optional<std::uint64_t>> CompleteRecording(const std::filesystem::path& path);
 
 /// Returns whether the file cannot go on after a writer's `status`: the disk failed. Otherwise one
 /// message was wrong, and the next may be right.

@@ -104,6 +104,12 @@ class Scan {
   /// Ends the cameras of a scan that was ordered to stop; what they have sent is still under way.
   /// Returns false if one does not end.
   bool EndCameras();
+  /// Returns whether there is a ground that may take what it lacks.
+  bool IsHeard() const {
+    constexpr Nanoseconds kSilent = std::chrono::seconds(5);
+    const std::optional<Nanoseconds> age = parts_.publisher.stats().receipt_age;
+    return age && *age < kSilent;
+  }
   /// Closes the recording of a scan of which nothing is captured any more.
   void CloseRecording();
   /// Ends the recording, then the link, each in its time; `say` tells what was done. The process's
@@ -164,8 +170,8 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
     // Before the ground has everything: whoever switches the rig off then has a whole recording.
     // Leaving closes it, too, and in time.
     if (!parts_.options.exit_at_end() && cost_.empty() && pipeline_.IsCaptured()) CloseRecording();
+    if (pipeline_.IsCaptured()) parts_.is_scanning = !pipeline_.finished() && IsHeard();
     if (pipeline_.finished()) {
-      parts_.is_scanning = false;
       if (parts_.options.exit_at_end()) return Next::kLeave;
       if (orders_.NoteFinished()) {
         LOG(Edge, Info)

@@ -35,8 +35,10 @@ struct CaptureParts {
   CameraHealth& health;
   Publisher& publisher;
   Leaving& leaving;
-  std::atomic<bool>& is_scanning;  ///< Kept up to date for those who wait for the end.
-  std::function<void()> on_idle;   ///< Called when the scan has ended and another is waited for.
+  /// Kept up to date for those who wait for the end: frames are captured, or on their way to a
+  /// ground that takes them.
+  std::atomic<bool>& is_scanning;
+  std::function<void()> on_idle;  ///< Called when the scan has ended and another is waited for.
   const Clock& clock;
   const std::stop_token& stop;
 };

@@ -38,6 +38,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Everything else goes first.
+constexpr int kNiceness = 10;
+
 int Fail(const Status& status) {
   LOG(Edge, Error) << status.message();
   return ExitCode(status);
@@ -133,20 +136,26 @@ Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
 
 /// A participant and what speaks through it; the first must outlive the others.
 struct Link {
-  std::atomic<bool> is_scanning{false};
   std::unique_ptr<Participant> participant;
   std::unique_ptr<RecordingServer> server;  ///< Null without recordings.
   std::unique_ptr<Publisher> publisher;
-  std::jthread completing;  ///< Recordings of processes before; nobody waits for it but the end.
+};
+
+/// Holds what outlives a scan, and the link in the end.
+struct Process {
+  ServedState state;
+  /// Completes recordings of processes before; nobody waits for it but the end.
+  std::jthread completing;
+  Link link;
 };
 
 /// Gives away recordings from now on. A scan does not end because it cannot.
-void ServeRecordings(const EdgeOptions& options, Link& link) {
+void ServeRecordings(const EdgeOptions& options, const ServedState& state, Link& link) {
   const double rate_mb_per_s = options.link().expert().fetch_mb_per_s();
   if (options.spool().record() == "off" || rate_mb_per_s <= 0.0) return;
   Result<std::unique_ptr<RecordingServer>> server = RecordingServer::Start(
       *link.participant, {options.link().edge_id(), options.spool().record(), 1e6 * rate_mb_per_s},
-      link.is_scanning);
+      state);
   if (!server) {
     LOG(Edge, Warning) << "recordings cannot be fetched: " << server.error().message();
     return;
@@ -157,7 +166,7 @@ void ServeRecordings(const EdgeOptions& options, Link& link) {
 /// Without a network it captures and records all the same, unless somebody waits for the end of
 /// the source. `link` must stay where it is.
 Status Connect(const EdgeOptions& options, const TransportEnvironment& environment,
-               const Clock& clock, Link& link) {
+               const Clock& clock, const ServedState& state, Link& link) {
   const int domain = options.link().domain();
   Result<std::unique_ptr<Participant>> joined = Participant::Create(environment, domain);
   if (joined) {
@@ -165,21 +174,21 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
     Result<std::unique_ptr<Publisher>> made = MakePublisher(options, *link.participant, clock);
     if (!made) return made.error();
     link.publisher = std::move(*made);
-    ServeRecordings(options, link);
+    ServeRecordings(options, state, link);
     return OkStatus();
   }
   if (options.exit_at_end() || joined.error().code() != StatusCode::kUnavailable) {
     return joined.error();
   }
   link.publisher = std::make_unique<LatePublisher>(
-      [&options, &environment, &clock, &link, domain](
+      [&options, &environment, &clock, &state, &link, domain](
           const std::stop_token& stop,
           const LatePublisher::Waiting& waiting) -> Result<std::unique_ptr<Publisher>> {
         Result<std::unique_ptr<Participant>> late =
             JoinDomain(environment, domain, clock, stop, waiting);
         if (!late) return Err(late.error());
         link.participant = std::move(*late);
-        ServeRecordings(options, link);
+        ServeRecordings(options, state, link);
         return MakePublisher(options, *link.participant, clock);
       });
   return OkStatus();
@@ -187,30 +196,35 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
 
 /// Gives the files that the processes before have left an index. A file that is not completed when
 /// the process leaves is readable as it is.
-std::jthread CompleteInBackground(const InterruptedScan& before) {
+std::jthread CompleteInBackground(const InterruptedScan& before, ServedState& state) {
   std::vector<std::filesystem::path> files;
   for (const RecordedRun& run : before.runs) {
     if (files.empty() || files.back() != run.file) files.push_back(run.file);
   }
+  state.is_completing = true;
   // Of a file of hours all of the disk may have to be looked at.
-  return std::jthread([files = std::move(files)](const std::stop_token& stop) {
+  return std::jthread([files = std::move(files), &state](const std::stop_token& stop) {
     NameThread("complete");
+    LowerThreadPriority(kNiceness);
     for (const std::filesystem::path& file : files) {
-      if (stop.stop_requested()) return;
-      const Result<std::uint64_t> cut = CompleteRecording(file);
-      if (cut) {
-        LOG(Edge, Info) << file.string() << " has broken off, and is completed";
-      } else {
+      if (stop.stop_requested()) break;
+      const auto cut = CompleteRecording(file);
+      if (!cut) {
         LOG(Edge, Warning) << cut.error().message() << "; it is readable as it is";
+      } else if (*cut) {
+        LOG(Edge, Info) << file.string() << " has broken off, and is completed";
       }
     }
+    state.is_completing = false;
   });
 }
 
 /// Opens the source and runs a scan of it. Joins the link if that has not been done.
 CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& environment,
                    const Clock& clock, const std::optional<Rig>& calibration,
-                   const std::stop_token& stop, Leaving& leaving, Link& link) {
+                   const std::stop_token& stop, Leaving& leaving, Process& process) {
+  Link& link = process.link;
+  process.completing.request_stop();  // The scan has the disk for itself.
   FrameCounters counters;
   CameraHealth health;
   const Result<std::unique_ptr<FrameSource>> source =
@@ -234,7 +248,7 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   }
 
   if (!link.publisher) {
-    const Status connected = Connect(options, environment, clock, link);
+    const Status connected = Connect(options, environment, clock, process.state, link);
     if (!connected.ok()) return {.status = Fail(connected)};
   }
   Result<std::unique_ptr<Spool>> spool = MakeSpool(options, session, before, clock, counters);
@@ -242,14 +256,14 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
     LOG(Edge, Error) << spool.error().message();
     return {.status = kExitRecording};
   }
-  const auto on_idle = [&before, &link] {
-    if (before) link.completing = CompleteInBackground(*before);
+  const auto on_idle = [&before, &process] {
+    if (before) process.completing = CompleteInBackground(*before, process.state);
   };
   const Status begun = link.publisher->BeginSession(
       DescribeRig(options, session), before ? PublishedBy(*before, session) : SessionBefore());
   if (!begun.ok()) return {.status = Fail(begun)};
   return Capture({options, session, **source, counters, health, *link.publisher, leaving,
-                  link.is_scanning, on_idle, clock, stop},
+                  process.state.is_scanning, on_idle, clock, stop},
                  std::move(*spool));
 }
 
@@ -266,12 +280,14 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
   LogRecords(options.source(), clock.Now());
   if (!calibration) return Fail(calibration.error());
-  Link link;
+  Process process;
   CaptureEnd end{.another_scan = true};
   while (end.another_scan) {
-    const CaptureEnd scan = RunScan(options, environment, clock, *calibration, stop, leaving, link);
+    const CaptureEnd scan =
+        RunScan(options, environment, clock, *calibration, stop, leaving, process);
     end = {end.status != 0 ? end.status : scan.status, scan.another_scan};
   }
+  leaving.deadline.Arm(stop_limits::kDisk, end.status, "the link or a recording that is completed");
   return end.status;
 }
 

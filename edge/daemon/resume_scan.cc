@@ -2,6 +2,7 @@
 
 #include <google/protobuf/util/message_differencer.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -110,7 +111,9 @@ void CountBefore(const InterruptedScan& before, const EdgeSession& session,
     counters.Count(sensor, FrameFate::kPublished, recorded);
     // Of a camera that has never been there nothing is lost.
     if (recorded > 0)
-      counters.Count(sensor, FrameFate::kLostByRestart, FirstNumber(session, sensor) - recorded);
+      counters.Count(
+          sensor, FrameFate::kLostByRestart,
+          FirstNumber(session, sensor) - std::min(FirstNumber(session, sensor), recorded));
   }
 }
 

@@ -37,6 +37,10 @@ Status Validate(const LinkOptions& options) {
   problems.CheckRange("expert.queue_frames", options.expert().queue_frames(), 1, 100'000);
   problems.CheckRange("expert.backfill_hz", options.expert().backfill_hz(), 0.0, 10'000.0);
   problems.CheckRange("expert.fetch_mb_per_s", options.expert().fetch_mb_per_s(), 0.0, 10'000.0);
+  constexpr double kMinFetch_mb_per_s = 0.05;  // A checksum must not take longer than patience.
+  const double fetch_mb_per_s = options.expert().fetch_mb_per_s();
+  if (fetch_mb_per_s > 0.0 && fetch_mb_per_s < kMinFetch_mb_per_s)
+    problems.Add("expert.fetch_mb_per_s", "must be 0 (never) or at least 0.05");
   problems.CheckRange("expert.linger_s", options.expert().linger_s(), 0.0, 3600.0);
   return problems.ToStatus();
 }

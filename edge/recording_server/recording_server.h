@@ -23,23 +23,30 @@ struct RecordingServerOptions {
   double bytes_per_s = 8e6;
 };
 
+/// Tells what an edge is at, for who serves its recordings. Thread-safe.
+struct ServedState {
+  std::atomic<bool> is_scanning{false};
+  std::atomic<bool> is_completing{false};  ///< Recordings that break off get their index.
+};
+
 /// Gives an edge's recordings to whoever asks over the link, while no scan is under way: a scan has
-/// link and disk for itself. Answers on a thread of its own, from its construction on.
+/// link and disk for itself. Answers on a thread of its own, from its construction on. Nothing of
+/// it is called by others.
 class RecordingServer {
  public:
-  /// `participant` and `is_scanning` must outlive it.
+  /// `participant` and `state` must outlive it.
   static Result<std::unique_ptr<RecordingServer>> Start(const Participant& participant,
                                                         RecordingServerOptions options,
-                                                        const std::atomic<bool>& is_scanning);
+                                                        const ServedState& state);
 
  private:
-  RecordingServer(RecordingServerOptions options, const std::atomic<bool>& is_scanning);
+  RecordingServer(RecordingServerOptions options, const ServedState& state);
   Status Open(const Participant& participant);
   void Run(const std::stop_token& stop);
   void Serve(const RecordingRequest& request, const std::stop_token& stop);
 
   const RecordingServerOptions options_;
-  const std::atomic<bool>& is_scanning_;
+  const ServedState& state_;
   RecordingShelf shelf_;
   RefusalCounter refusals_;
   Reader<RecordingRequest> requests_;

@@ -19,7 +19,9 @@ void Describe(const ListedRecording& recording, RecordingPiece& piece) {
   piece.recording = recording.path.filename().string();
   const std::uintmax_t size = std::filesystem::file_size(recording.path, error);
   piece.size = error ? 0 : size;
-  piece.written = recording.WrittenAt();
+  // A time that cannot be would have the answer refused.
+  constexpr CaptureTime kYear2100{std::chrono::seconds(4'102'444'800)};
+  piece.written = std::clamp(recording.WrittenAt(), CaptureTime(), kYear2100);
   if (IsBeingWritten(recording.path)) piece.outcome = RecordingOutcome::kBeingWritten;
 }
 
@@ -40,7 +42,12 @@ RecordingPiece RecordingShelf::Answer(const RecordingRequest& request) {
 
 void RecordingShelf::List(const RecordingRequest& request, RecordingPiece& piece) {
   // Whoever asks for one place after the other sees one list.
-  if (request.offset == 0) Look();
+  constexpr Nanoseconds kLookInterval = std::chrono::seconds(1);
+  const SteadyTime now = std::chrono::steady_clock::now();
+  if (request.offset == 0 && (!looked_at_ || now - *looked_at_ >= kLookInterval)) {
+    looked_at_ = now;
+    Look();
+  }
   if (request.offset >= listed_.size()) {
     piece.outcome = RecordingOutcome::kNotThere;
     return;
@@ -57,8 +64,8 @@ const ListedRecording* RecordingShelf::Find(const std::string& name) const {
 
 void RecordingShelf::Read(const RecordingRequest& request, RecordingPiece& piece) {
   const ListedRecording* recording = Find(request.recording);
-  if (recording == nullptr) {
-    Look();
+  if (recording == nullptr && !looked_at_) {
+    Look();  // Who asks knows the name from before this process.
     recording = Find(request.recording);
   }
   if (recording == nullptr) {

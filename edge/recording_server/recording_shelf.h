@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/base/status.h"
@@ -25,6 +27,7 @@ class RecordingShelf {
 
   const std::filesystem::path record_;
   std::vector<ListedRecording> listed_;  ///< As of the newest look.
+  std::optional<SteadyTime> looked_at_;
 };
 
 }  // namespace isotherm

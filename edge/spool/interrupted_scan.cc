@@ -128,16 +128,20 @@ void AddTo(InterruptedScan& scan, const OpenPart& part) {
     const StreamSurvey& found = survey.Of(sensor);
     RecordedStream& stream = scan.streams.at(index);
     if (found.places.empty() || found.places.front().number < stream.next) continue;
+    const std::uint64_t before = stream.next;
     stream.frames += found.frames;
     stream.next = found.last.number + 1;
     // A camera that was away for a part of the time has a lower rate than that of its frames.
     stream.rate_hz = std::max(found.rate_hz, NominalRate(info, sensor));
     scan.newest = std::max(scan.newest, found.last.time);
-    for (std::size_t i = 0; i < found.places.size(); ++i) {
-      const FramePlace& place = found.places[i];
-      const std::uint64_t end =
-          i + 1 < found.places.size() ? found.places[i + 1].number : stream.next;
+    // Before the first place there may be others; a run need not have all of its frames.
+    const std::uint64_t first = PartOf(info).first_numbers.at(index);
+    const bool has_earlier = first >= before && first < found.places.front().number && info.start;
+    FramePlace place = has_earlier ? FramePlace{first, *info.start} : found.places.front();
+    for (std::size_t i = has_earlier ? 0 : 1; i <= found.places.size(); ++i) {
+      const std::uint64_t end = i < found.places.size() ? found.places[i].number : stream.next;
       scan.runs.push_back({part.listed.path, sensor, {place.number, end - 1}, place.time});
+      if (i < found.places.size()) place = found.places[i];
     }
   }
   // The newest may have been left before anything but metadata was on the disk.

@@ -38,8 +38,9 @@ class InterruptedScanTest : public ::testing::Test {
   struct Content {
     std::string edge_id = "rig7";
     std::uint64_t session = kSession;
-    Nanoseconds begin{0};      ///< After kScanStart.
-    Nanoseconds depth_ends{};  ///< No frames of this camera after that; 0: to the end.
+    Nanoseconds begin{0};         ///< After kScanStart.
+    Nanoseconds depth_begins{0};  ///< No frames of this camera before that.
+    Nanoseconds depth_ends{};     ///< No frames of this camera after that; 0: to the end.
     std::array<std::uint64_t, 2> first_numbers{};
     std::uint64_t left_out = 0;  ///< Every depth number that is divisible by it; 0: none.
   };
@@ -60,7 +61,8 @@ class InterruptedScanTest : public ::testing::Test {
     auto [depth, thermal] = content.first_numbers;
     for (Nanoseconds time{0}; time < length; time += 1ms) {
       const CaptureTime now = kScanStart + content.begin + time;
-      const bool has_depth = content.depth_ends == Nanoseconds(0) || time < content.depth_ends;
+      const bool has_depth = time >= content.depth_begins &&
+                             (content.depth_ends == Nanoseconds(0) || time < content.depth_ends);
       if (time % kDepthPeriod == 0ns && has_depth) {
         const std::uint64_t number = depth++;
         if (content.left_out == 0 || number % content.left_out != 0) {
@@ -276,6 +278,25 @@ TEST_F(InterruptedScanTest, AProcessThatWasKilledBeforeItsFirstFrameEndsNoScan) 
   EXPECT_EQ(scan->Of(Sensor::kThermal).next, 200U);
   const std::uint64_t sent_by_the_second = 260 + 30;
   EXPECT_GT(scan->NextNumber(Sensor::kThermal, kScanStart + 7s), sent_by_the_second);
+}
+
+TEST_F(InterruptedScanTest, ACameraThatCameLateIsKnownFromItsFirstFrameOn) {
+  // Between the places that are looked up, and further from them than is looked.
+  for (const Nanoseconds length : {Nanoseconds(29s), Nanoseconds(38s)}) {
+    const Numbers numbers = Kill("scan.mcap", {.depth_begins = 24s}, length);
+    const std::optional<InterruptedScan> scan = Find(length + 1s);
+    ASSERT_TRUE(scan);
+    EXPECT_EQ(scan->Of(Sensor::kDepth).frames, numbers[0].size());
+    EXPECT_EQ(scan->Of(Sensor::kDepth).next, *numbers[0].rbegin() + 1);
+    for (const std::uint64_t number : numbers[0]) {
+      const bool is_known = std::ranges::any_of(scan->runs, [number](const RecordedRun& run) {
+        return run.sensor == Sensor::kDepth && run.frames.first <= number &&
+               number <= run.frames.last;
+      });
+      EXPECT_TRUE(is_known) << number;
+    }
+    std::filesystem::remove(folder_.path() / "scan.mcap");
+  }
 }
 
 TEST_F(InterruptedScanTest, AFileThatBreaksOffGivesWhatIsWhole) {

@@ -72,7 +72,8 @@ std::vector<ListedRecording> ListRecordings(const std::filesystem::path& record)
     listed->written = entry->last_write_time(ignored);
     if (!ignored) found.push_back(std::move(*listed));
   }
-  std::ranges::sort(found, std::greater(), &ListedRecording::written);
+  std::ranges::sort(found, {}, &ListedRecording::path);
+  std::ranges::stable_sort(found, std::greater(), &ListedRecording::written);
   return found;
 }
 

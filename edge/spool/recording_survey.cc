@@ -1,6 +1,7 @@
 #include "edge/spool/recording_survey.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 #include <utility>
@@ -52,6 +53,9 @@ RecordingSurvey::RecordingSurvey(RecordingReader& reader) : reader_(reader) {
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
     StreamSurvey& stream = streams_.at(static_cast<std::size_t>(sensor));
     stream.frames = CountOf(info, sensor);
+    // A camera that came so late that no place had a frame of it.
+    if (stream.frames > 0 && stream.places.empty())
+      NoteLast(*info.end - interval - kPlaceInterval, CaptureTime::max());
     if (stream.places.empty()) continue;
     // A camera that was lost before: its last frame is no further than an interval behind its last
     // place.
@@ -100,7 +104,8 @@ void RecordingSurvey::NoteLast(CaptureTime from, CaptureTime to) {
   while (const std::optional<FramePoint> point = NextFrame(items_left)) {
     if (point->place.time > to) return;
     StreamSurvey& stream = streams_.at(static_cast<std::size_t>(point->sensor));
-    if (point->place.number > stream.last.number) stream.last = point->place;
+    if (stream.places.empty()) stream.places.push_back(point->place);
+    if (point->place.number >= stream.last.number) stream.last = point->place;
   }
 }
 

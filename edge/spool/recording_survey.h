@@ -20,12 +20,13 @@ struct FramePlace {
 /// Tells what a file has of one stream.
 struct StreamSurvey {
   std::uint64_t frames = 0;        ///< How many.
-  std::vector<FramePlace> places;  ///< Some of them, the first among them; ascending.
+  std::vector<FramePlace> places;  ///< Some of them, ascending. Others may lie before the first.
   FramePlace last;
   double rate_hz = 0.0;  ///< Numbers per second at the end; 0: not known.
 };
 
 /// Finds out which frames a recording has, by samples, and exactly at the end of each stream.
+/// Thread-compatible.
 class RecordingSurvey {
  public:
   explicit RecordingSurvey(RecordingReader& reader);

@@ -30,11 +30,11 @@ more than link.expert.fetch_mb_per_s (8 MB/s).
 A file of a recording that was interrupted (a power cut) has no index yet; `isotherm inspect --repair` adds it.
 
 Exit status: 0 done, 69 no rig there or it does not answer any more, 64 several rigs and no --edge-id, or another file is in
-the way, 66 no such recording, 65 it is being written.
+the way, 66 no such recording, 65 it is being written or has changed meanwhile, 74 a disk fails or is full.
 
 Examples:
   isotherm fetch                                       what there is
-  isotherm fetch --newest -o flight                    the last one
+  isotherm fetch --newest -o flight                    the last one, with all its files
   isotherm fetch --all -o flight --edge-id drone-2
   isotherm fetch edge-20261127-101500-0123abcd.mcap
 
@@ -75,24 +75,51 @@ void PrintList(const std::vector<RemoteRecording>& recordings, const std::string
   }
 }
 
+/// Returns the first file of the recording that `name` is a part of ("scan-2.mcap" of "scan.mcap").
+std::string FirstFile(const std::string& name, const std::vector<RemoteRecording>& recordings) {
+  const std::filesystem::path path = name;
+  const std::string stem = path.stem().string();
+  const std::size_t dash = stem.rfind('-');
+  if (dash == std::string::npos) return name;
+  const std::string first = stem.substr(0, dash) + path.extension().string();
+  const bool is_there =
+      std::ranges::find(recordings, first, &RemoteRecording::name) != recordings.end();
+  return is_there ? first : name;
+}
+
 /// Returns those that are meant, as the list has them.
 Result<std::vector<RemoteRecording>> Chosen(const FetchArguments& arguments,
                                             const std::vector<RemoteRecording>& recordings) {
-  std::vector<RemoteRecording> chosen;
-  for (const RemoteRecording& recording : recordings) {
-    const bool is_named =
-        std::ranges::find(arguments.names, recording.name) != arguments.names.end();
-    const bool is_newest = arguments.newest && chosen.empty() && !recording.is_being_written;
-    const bool is_one_of_all = arguments.all && !recording.is_being_written;
-    if (is_named || is_newest || is_one_of_all) chosen.push_back(recording);
-  }
   for (const std::string& name : arguments.names) {
     if (std::ranges::find(recordings, name, &RemoteRecording::name) == recordings.end())
       return Err(
           NotFound(fmt::format("the rig has no {}; isotherm fetch lists what it has", name)));
   }
+  const auto newest = std::ranges::find(recordings, false, &RemoteRecording::is_being_written);
+  const std::string newest_first =
+      newest == recordings.end() ? "" : FirstFile(newest->name, recordings);
+  std::vector<RemoteRecording> chosen;
+  for (const RemoteRecording& recording : recordings) {
+    const bool is_named =
+        std::ranges::find(arguments.names, recording.name) != arguments.names.end();
+    const bool is_newest =
+        arguments.newest && FirstFile(recording.name, recordings) == newest_first;
+    if (is_named || is_newest || arguments.all) chosen.push_back(recording);
+  }
   if (chosen.empty()) return Err(NotFound("the rig has no recording that is finished"));
   return chosen;
+}
+
+Status FetchOne(const RemoteRecording& recording, const std::string& folder,
+                RecordingFetcher& fetcher) {
+  ProgressBar bar(Printable(recording.name), recording.size / 1'000'000, "MB");
+  const auto show = [&](std::uint64_t bytes) {
+    bar.Update(static_cast<double>(bytes) / static_cast<double>(recording.size));
+  };
+  ISOTHERM_RETURN_IF_ERROR(fetcher.Fetch(recording, folder, show));
+  bar.Finish();
+  std::puts(Printable((std::filesystem::path(folder) / recording.name).string()).c_str());
+  return OkStatus();
 }
 
 Status Fetch(const FetchArguments& arguments, RecordingFetcher& fetcher) {
@@ -104,16 +131,16 @@ Status Fetch(const FetchArguments& arguments, RecordingFetcher& fetcher) {
   }
   const Result<std::vector<RemoteRecording>> chosen = Chosen(arguments, *recordings);
   if (!chosen) return chosen.error();
+  Status first_error;
   for (const RemoteRecording& recording : *chosen) {
-    ProgressBar bar(recording.name, recording.size / 1'000'000, "MB");
-    const auto show = [&](std::uint64_t bytes) {
-      bar.Update(static_cast<double>(bytes) / static_cast<double>(recording.size));
-    };
-    ISOTHERM_RETURN_IF_ERROR(fetcher.Fetch(recording, arguments.folder, show));
-    bar.Finish();
-    fmt::print("{}\n", (std::filesystem::path(arguments.folder) / recording.name).string());
+    const Status fetched = FetchOne(recording, arguments.folder, fetcher);
+    if (fetched.ok()) continue;
+    // What stands in the way of one file does not of the others.
+    if (fetched.code() == StatusCode::kUnavailable || chosen->size() == 1) return fetched;
+    std::fputs(fmt::format("{}\n", PrintableLines(fetched.message())).c_str(), stderr);
+    if (first_error.ok()) first_error = fetched;
   }
-  return OkStatus();
+  return first_error;
 }
 
 Status Run(const FetchArguments& arguments) {
@@ -126,9 +153,10 @@ Status Run(const FetchArguments& arguments) {
     RecordingFetcher::Options options;
     options.on_busy = [said = false, &edge_id]() mutable {
       if (std::exchange(said, true)) return;
-      std::fputs(
-          fmt::format("{} scans; its recordings come when the scan is over\n", edge_id).c_str(),
-          stderr);
+      std::fputs(fmt::format("{} is busy with a scan or a recording; it is waited for\n",
+                             Printable(edge_id))
+                     .c_str(),
+                 stderr);
     };
     RecordingFetcher fetcher(**way, clock, asker, options);
     return Fetch(arguments, fetcher);
@@ -142,8 +170,8 @@ void AddFetchCommand(CLI::App& app, CommandBody& body) {
   auto arguments = std::make_shared<FetchArguments>();
   auto* const names =
       command->add_option("recordings", arguments->names, "Names as the list has them");
-  auto* const all = command->add_flag("--all", arguments->all, "All that are finished");
-  command->add_flag("--newest", arguments->newest, "The one that was finished last")
+  auto* const all = command->add_flag("--all", arguments->all, "All there are");
+  command->add_flag("--newest", arguments->newest, "All files of the one that was finished last")
       ->excludes(all)
       ->excludes(names);
   all->excludes(names);

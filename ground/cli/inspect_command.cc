@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -45,13 +44,10 @@ Sensor ChosenStream(const InspectArguments& arguments, const RecordingInfo& info
 
 /// Says on standard error what it did, so that JSON stays alone.
 Status Repair(const std::string& recording) {
-  std::error_code ignored;
-  const auto before = std::filesystem::file_size(recording, ignored);
-  const Result<std::uint64_t> cut = CompleteRecording(recording);
+  const auto cut = CompleteRecording(recording);
   if (!cut) return cut.error();
-  const bool changed = before != std::filesystem::file_size(recording, ignored);
-  const std::string done = changed ? fmt::format("completed, {} bytes cut off at its end", *cut)
-                                   : std::string("is complete, nothing to repair");
+  const std::string done = *cut ? fmt::format("completed, {} bytes cut off at its end", **cut)
+                                : std::string("is complete, nothing to repair");
   std::fputs(fmt::format("{}: {}\n", recording, done).c_str(), stderr);
   return OkStatus();
 }

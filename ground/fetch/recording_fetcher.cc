@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,7 +27,15 @@ namespace {
 constexpr std::uint32_t kPieceBytes = 32'768;
 /// A list that does not end is none.
 constexpr std::uint64_t kMaxListed = 100'000;
+// None of these is tuned.
 constexpr Nanoseconds kBusyInterval = std::chrono::seconds(1);
+/// The first request may be written before the rig's reader is known.
+constexpr Nanoseconds kFirstRetry = std::chrono::milliseconds(200);
+/// Answers may overtake each other by so much.
+constexpr Nanoseconds kDisorder = std::chrono::milliseconds(300);
+/// Requests under way; the rig reads 4 MB for a checksum.
+constexpr std::size_t kWindow = kMaxRecordingRequests;
+constexpr std::size_t kChecksumWindow = 2;
 
 /// A name that may be written to a folder; the rig may be anybody.
 bool IsPlainName(const std::string& name) {
@@ -112,6 +121,9 @@ Status Check(const RecordingPiece& piece, const RemoteRecording& recording) {
 LocalState StateOf(const RemoteRecording& recording, const std::filesystem::path& folder) {
   std::error_code error;
   const std::filesystem::path file = folder / recording.name;
+  const bool is_other =
+      std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
+  if (is_other) return LocalState::kOtherSize;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (!error) return size == recording.size ? LocalState::kSameSize : LocalState::kOtherSize;
   return std::filesystem::exists(file.string() + ".part", error) ? LocalState::kPartial
@@ -136,55 +148,83 @@ Status RecordingFetcher::NoAnswer() const {
                   patience_s));
 }
 
-Status RecordingFetcher::Exchange(const Next& next, const Take& take) {
-  struct UnderWay {
-    RecordingRequest request;
-    SteadyTime sent;
-  };
-  std::map<std::uint64_t, UnderWay> under_way;
-  SteadyTime heard = clock_.SteadyNow();
-  SteadyTime may_ask{};
-  bool is_all_asked = false;
+Status RecordingFetcher::Exchange(const Next& next, const Take& take, std::size_t window) {
+  Exchanged exchanged{.heard = clock_.SteadyNow()};
   while (true) {
     const SteadyTime now = clock_.SteadyNow();
-    if (now - heard > options_.patience) return NoAnswer();
-    while (!is_all_asked && now >= may_ask &&
-           under_way.size() < static_cast<std::size_t>(kMaxRecordingRequests)) {
-      std::optional<RecordingRequest> request = next();
-      is_all_asked = !request;
-      if (!request) break;
-      request->asker = asker_;
-      request->number = next_number_++;
-      static_cast<void>(way_.Ask(*request));  // Asked again if nothing comes.
-      under_way[request->number] = {std::move(*request), now};
+    if (now - exchanged.heard > options_.patience) return NoAnswer();
+    if (now >= exchanged.may_ask) {
+      AskNext(next, window, exchanged);
+      AskAgain(exchanged);
     }
-    if (is_all_asked && under_way.empty()) return OkStatus();
-    for (auto& [number, asked] : under_way) {
-      if (now < may_ask || now - asked.sent < options_.retry) continue;
-      static_cast<void>(way_.Ask(asked.request));
-      asked.sent = now;
-    }
+    if (exchanged.is_all_asked && exchanged.under_way.empty()) return OkStatus();
     for (RecordingPiece& piece : way_.Await(kPollInterval)) {
-      const auto asked = under_way.find(piece.number);
-      if (piece.asker != asker_ || asked == under_way.end()) continue;
-      heard = clock_.SteadyNow();
-      has_answered_ = true;
-      const RecordingRequest& request = asked->second.request;
-      if (piece.outcome == RecordingOutcome::kBusy) {
-        if (options_.on_busy) options_.on_busy();
-        may_ask = heard + kBusyInterval;
-        asked->second.sent = SteadyTime{};  // As soon as one may.
-        continue;
-      }
-      const bool is_read =
-          request.kind == RecordingRequestKind::kRead && piece.outcome == RecordingOutcome::kDone;
-      const bool is_whole = !is_read || (piece.bytes.size() == request.length &&
-                                         mcap::Crc32(piece.bytes) == piece.crc);
-      if (!is_whole || piece.offset != request.offset) continue;  // Asked for again.
-      ISOTHERM_RETURN_IF_ERROR(take(request, std::move(piece)));
-      under_way.erase(asked);
+      if (piece.asker == asker_)
+        ISOTHERM_RETURN_IF_ERROR(TakePiece(std::move(piece), take, exchanged));
     }
   }
+}
+
+void RecordingFetcher::AskNext(const Next& next, std::size_t window, Exchanged& exchanged) {
+  while (!exchanged.is_all_asked && exchanged.under_way.size() < window) {
+    std::optional<RecordingRequest> request = next();
+    exchanged.is_all_asked = !request;
+    if (!request) return;
+    request->asker = asker_;
+    request->number = next_number_++;
+    Asked& asked = exchanged.under_way[request->number];
+    asked.request = std::move(*request);
+    Ask(asked, exchanged);
+  }
+}
+
+void RecordingFetcher::Ask(Asked& asked, Exchanged& exchanged) {
+  static_cast<void>(way_.Ask(asked.request));  // Asked again if nothing comes.
+  asked.sent = clock_.SteadyNow();
+  asked.turn = exchanged.next_turn++;
+}
+
+void RecordingFetcher::AskAgain(Exchanged& exchanged) {
+  const SteadyTime now = clock_.SteadyNow();
+  const Nanoseconds patience = has_answered_ ? options_.retry : kFirstRetry;
+  for (auto& [number, asked] : exchanged.under_way) {
+    // A rig answers in turn, at its own pace: what it has not come to is not lost.
+    const bool was_passed = asked.turn < exchanged.answered_turn && now - asked.sent > kDisorder;
+    const bool is_silent = now - std::max(asked.sent, exchanged.heard) >= patience;
+    if (asked.is_refused || was_passed || is_silent) {
+      asked.is_refused = false;
+      Ask(asked, exchanged);
+    }
+  }
+}
+
+Status RecordingFetcher::TakePiece(RecordingPiece&& piece, const Take& take, Exchanged& exchanged) {
+  const auto found = exchanged.under_way.find(piece.number);
+  if (found == exchanged.under_way.end()) return OkStatus();
+  Asked& asked = found->second;
+  if (piece.outcome == RecordingOutcome::kBusy) {
+    if (options_.on_busy) options_.on_busy();
+    exchanged.heard = clock_.SteadyNow();
+    exchanged.may_ask = exchanged.heard + kBusyInterval;
+    asked.is_refused = true;
+    has_answered_ = true;
+    return OkStatus();
+  }
+  const RecordingRequest& request = asked.request;
+  const bool is_read =
+      request.kind == RecordingRequestKind::kRead && piece.outcome == RecordingOutcome::kDone;
+  const bool is_whole =
+      !is_read || (piece.bytes.size() == request.length && mcap::Crc32(piece.bytes) == piece.crc);
+  if (!is_whole || piece.offset != request.offset) {
+    asked.is_refused = true;  // Asked for again; it is no sign of a rig that works.
+    return OkStatus();
+  }
+  exchanged.heard = clock_.SteadyNow();
+  exchanged.answered_turn = std::max(exchanged.answered_turn, asked.turn);
+  has_answered_ = true;
+  const RecordingRequest taken = std::move(asked.request);
+  exchanged.under_way.erase(found);
+  return take(taken, std::move(piece));
 }
 
 Result<std::vector<RemoteRecording>> RecordingFetcher::List() {
@@ -208,7 +248,8 @@ Result<std::vector<RemoteRecording>> RecordingFetcher::List() {
   };
   // The first place alone: when it is asked for, the rig makes the list.
   for (const std::uint64_t limit : {std::uint64_t{1}, kMaxListed}) {
-    if (const Status listed = Exchange(next_before(limit), take); !listed.ok()) return Err(listed);
+    if (const Status listed = Exchange(next_before(limit), take, kWindow); !listed.ok())
+      return Err(listed);
   }
   std::vector<RemoteRecording> recordings;
   for (auto& [at, recording] : entries) recordings.push_back(std::move(recording));
@@ -223,17 +264,18 @@ Result<std::uint64_t> RecordingFetcher::CountSame(const RemoteRecording& recordi
   const std::uint64_t here = std::min((*source)->size(), recording.size);
   std::uint64_t same = here;
   std::uint64_t compared = 0;
-  const Status done =
-      Exchange(InSteps(RecordingRequestKind::kChecksum, recording, 0, here, kMaxChecksumBytes),
-               [&](const RecordingRequest& request, RecordingPiece&& piece) -> Status {
-                 ISOTHERM_RETURN_IF_ERROR(Check(piece, recording));
-                 std::vector<std::uint8_t> bytes(request.length);
-                 ISOTHERM_RETURN_IF_ERROR((*source)->Read(request.offset, bytes));
-                 if (mcap::Crc32(bytes) != piece.crc) same = std::min(same, request.offset);
-                 compared += request.length;
-                 progress(compared);
-                 return OkStatus();
-               });
+  const Status done = Exchange(
+      InSteps(RecordingRequestKind::kChecksum, recording, 0, here, kMaxChecksumBytes),
+      [&](const RecordingRequest& request, RecordingPiece&& piece) -> Status {
+        ISOTHERM_RETURN_IF_ERROR(Check(piece, recording));
+        std::vector<std::uint8_t> bytes(request.length);
+        ISOTHERM_RETURN_IF_ERROR((*source)->Read(request.offset, bytes));
+        if (mcap::Crc32(bytes) != piece.crc) same = std::min(same, request.offset);
+        compared += request.length;
+        progress(compared);
+        return OkStatus();
+      },
+      kChecksumWindow);
   if (!done.ok()) return Err(done);
   return same;
 }
@@ -249,7 +291,8 @@ Status RecordingFetcher::ReadInto(const RemoteRecording& recording, std::uint64_
         done += request.length;
         progress(done);
         return OkStatus();
-      });
+      },
+      kWindow);
 }
 
 Status RecordingFetcher::Fetch(const RemoteRecording& recording,
@@ -277,6 +320,8 @@ Status RecordingFetcher::Fetch(const RemoteRecording& recording,
   std::filesystem::create_directories(folder, error);
   const OwnedFile file(::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
   if (file.get() < 0) return Failed("create", part);
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return Unavailable(fmt::format("another isotherm fetch is at {}", part.string()));
   // A hole that a piece has left which never came is found by its checksum, as anything else is.
   const Result<std::uint64_t> same = CountSame(recording, part, progress);
   if (!same) return same.error();

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,7 +34,8 @@ class RecordingFetcher {
  public:
   /// Says how patient it is. Not tuned.
   struct Options {
-    Nanoseconds retry = std::chrono::seconds(2);      ///< An answer that has not come is lost.
+    Nanoseconds retry =
+        std::chrono::seconds(2);  ///< With no answer, all that were asked for are lost.
     Nanoseconds patience = std::chrono::seconds(20);  ///< Without any answer.
     std::function<void()> on_busy;  ///< The rig scans, and is waited for; may be empty.
   };
@@ -48,8 +51,8 @@ class RecordingFetcher {
   /// Brings a recording into `folder`. What an attempt before has left (NAME.part) is compared with
   /// the rig's by checksums, and gone on with; a file that is there with the same content is left
   /// as it is. kFailedPrecondition if it grows on the rig, kInvalidArgument if another file of its
-  /// name is there, kUnavailable if the rig does not answer any more, kIoError if the disk does
-  /// not take it. What has come stays for the next attempt.
+  /// name is there, kUnavailable if the rig does not answer any more or another fetch is at it,
+  /// kIoError if the disk does not take it. What has come stays for the next attempt.
   Status Fetch(const RemoteRecording& recording, const std::filesystem::path& folder,
                const Progress& progress);
 
@@ -59,8 +62,30 @@ class RecordingFetcher {
   /// Takes an answer that fits its request.
   using Take = std::function<Status(const RecordingRequest&, RecordingPiece&&)>;
 
-  /// Asks for all that `next` names, several at once, until each has its answer.
-  Status Exchange(const Next& next, const Take& take);
+  /// A request that has no answer yet.
+  struct Asked {
+    RecordingRequest request;
+    SteadyTime sent;
+    std::uint64_t turn = 0;   ///< Among all that were sent.
+    bool is_refused = false;  ///< Its answer was none.
+  };
+  /// Holds what is known of requests and answers of one exchange.
+  struct Exchanged {
+    std::map<std::uint64_t, Asked> under_way{};  ///< By number.
+    SteadyTime heard{};                          ///< The newest answer that could be used.
+    SteadyTime may_ask{};
+    std::uint64_t next_turn = 1;
+    std::uint64_t answered_turn = 0;  ///< The highest.
+    bool is_all_asked = false;
+  };
+
+  /// Asks for all that `next` names, `window` at once, until each has its answer.
+  Status Exchange(const Next& next, const Take& take, std::size_t window);
+  void AskNext(const Next& next, std::size_t window, Exchanged& exchanged);
+  void Ask(Asked& asked, Exchanged& exchanged);
+  /// Asks again for what got lost.
+  void AskAgain(Exchanged& exchanged);
+  Status TakePiece(RecordingPiece&& piece, const Take& take, Exchanged& exchanged);
   Status NoAnswer() const;
   /// Returns how many bytes of the file are those of the recording, from its beginning on.
   Result<std::uint64_t> CountSame(const RemoteRecording& recording,

@@ -3,10 +3,14 @@
 #include <utility>
 
 #include "common/transport/endpoints.h"
+#include "common/transport/poll_interval.h"
 #include "common/transport/wait_set.h"
 
 namespace isotherm {
 namespace {
+
+/// A second. Not tuned.
+constexpr int kMatchPolls = 50;
 
 class LinkRecordingWay final : public RecordingWay {
  public:
@@ -19,6 +23,9 @@ class LinkRecordingWay final : public RecordingWay {
     return wait_set_.Attach(pieces_);
   }
   Status Ask(const RecordingRequest& request) override {
+    // What is written before the rig's reader is known gets lost.
+    for (int i = 0; requests_.matched_readers() == 0 && i < kMatchPolls; ++i)
+      wait_set_.Wait(kPollInterval);
     return requests_.Write(edge_id_, request);
   }
   std::vector<RecordingPiece> Await(Nanoseconds timeout) override {

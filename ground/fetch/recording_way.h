@@ -12,6 +12,7 @@
 namespace isotherm {
 
 /// The way to a rig that answers about its recordings. Answers may come late, twice or never.
+/// Thread-compatible.
 class RecordingWay {
  public:
   virtual ~RecordingWay() = default;

@@ -114,6 +114,24 @@ TEST_F(FetchTest, AnAttemptThatIsKilledIsGoneOnWith) {
   EXPECT_FALSE(std::filesystem::exists(part));
 }
 
+TEST_F(FetchTest, AGroundThatIsGoneAndLacksFramesKeepsNothingBack) {
+  std::vector<std::string> arguments = {"--domain", std::to_string(OwnDomain()), "--output",
+                                        folder_.path() / "ground"};
+  const std::vector<std::string> quick = QuickModel();
+  arguments.insert(arguments.end(), quick.begin(), quick.end());
+  Process ground({GroundService(), arguments, {}});
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  Process edge(Edge(3, {"--set", "link.wait_for_ground=true"}));
+  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output();
+  ground.Signal(SIGKILL);
+  ASSERT_TRUE(edge.WaitForOutput("the recording is closed", kPatience)) << edge.output();
+  EXPECT_THAT(edge.output(), Not(HasSubstr("waiting for the order to start")))
+      << "the edge still waits for the ground";
+  const Finished fetched = RunToEnd(Fetch({"--newest"}), kPatience);
+  EXPECT_EQ(fetched.status, 0) << fetched.output;
+  EXPECT_TRUE(Get(here_ / Recording().filename()) == Get(Recording()));
+}
+
 TEST_F(FetchTest, ARigThatGivesNothingAwayIsNotWaitedForForEver) {
   Process edge(Edge(1, {"--set", "link.expert.fetch_mb_per_s=0"}));
   ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start", kPatience)) << edge.output();
