@@ -130,7 +130,7 @@ void AddTo(InterruptedScan& scan, const OpenPart& part) {
     if (found.places.empty() || found.places.front().number < stream.next) continue;
     const std::uint64_t before = stream.next;
     stream.frames += found.frames;
-    stream.next = found.last.number + 1;
+    stream.next = std::min(found.last.number, kMaxNumber) + 1;
     // A camera that was away for a part of the time has a lower rate than that of its frames.
     stream.rate_hz = std::max(found.rate_hz, NominalRate(info, sensor));
     scan.newest = std::max(scan.newest, found.last.time);
