@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/messages/recording_transfer.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/testing/joined_ends.h"
 

@@ -129,7 +129,9 @@ class EdgeRestartTest : public ::testing::Test {
       EXPECT_TRUE(Without(*sent, *got).empty()) << "missing on the ground";
       const std::size_t not_recorded = Without(*got, *sent).size();
       EXPECT_LE(not_recorded, kMaxNotRecorded * static_cast<std::size_t>(parts - 1));
-      const auto link = [&](const char* what) { return NumberAt(stats, {"link", name, what}); };
+      const auto link = [&stats, stream = name](const char* what) {
+        return NumberAt(stats, {"link", stream, what});
+      };
       EXPECT_EQ(link("missing"), 0.0);
       EXPECT_EQ(link("received"), static_cast<double>(got->size()));
       EXPECT_GT(NumberAt(stats, {"link", name, "dropped_by_rig", "lost_by_a_restart"}), 0.0);

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <thread>
 #include <vector>
 
@@ -100,7 +99,7 @@ class ShortWriters {
   void Write(const char* edge_id) const {
     for (std::size_t i = 0; i < writers_.size(); ++i) {
       std::vector<char> sample(topic_.types[i]->m_size);
-      std::strcpy(sample.data(), edge_id);
+      std::snprintf(sample.data(), kMaxIdBytes + 1, "%s", edge_id);
       static_cast<void>(dds_write(writers_[i], sample.data()));
     }
   }
