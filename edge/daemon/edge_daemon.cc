@@ -141,12 +141,11 @@ struct Link {
   std::unique_ptr<Publisher> publisher;
 };
 
-/// Holds what outlives a scan, and the link in the end.
+/// Holds what outlives scans and link.
 struct Process {
   ServedState state;
   /// Completes recordings of processes before; nobody waits for it but the end.
   std::jthread completing;
-  Link link;
 };
 
 /// Gives away recordings from now on. A scan does not end because it cannot.
@@ -222,8 +221,7 @@ std::jthread CompleteInBackground(const InterruptedScan& before, ServedState& st
 /// Opens the source and runs a scan of it. Joins the link if that has not been done.
 CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& environment,
                    const Clock& clock, const std::optional<Rig>& calibration,
-                   const std::stop_token& stop, Leaving& leaving, Process& process) {
-  Link& link = process.link;
+                   const std::stop_token& stop, Leaving& leaving, Process& process, Link& link) {
   process.completing.request_stop();  // The scan has the disk for itself.
   FrameCounters counters;
   CameraHealth health;
@@ -282,12 +280,17 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   if (!calibration) return Fail(calibration.error());
   Process process;
   CaptureEnd end{.another_scan = true};
-  while (end.another_scan) {
-    const CaptureEnd scan =
-        RunScan(options, environment, clock, *calibration, stop, leaving, process);
-    end = {end.status != 0 ? end.status : scan.status, scan.another_scan};
+  {
+    Link link;
+    while (end.another_scan) {
+      const CaptureEnd scan =
+          RunScan(options, environment, clock, *calibration, stop, leaving, process, link);
+      end = {end.status != 0 ? end.status : scan.status, scan.another_scan};
+    }
   }
-  leaving.deadline.Arm(stop_limits::kDisk, end.status, "the link or a recording that is completed");
+  // The link has ended in its own time.
+  if (process.state.is_completing)
+    leaving.deadline.Arm(stop_limits::kDisk, end.status, "a recording that is completed");
   return end.status;
 }
 

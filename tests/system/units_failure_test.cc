@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tests/system/units.h"
 
@@ -54,6 +56,35 @@ TEST_F(UnitsTest, F37F40StartedAgainAtOnceHoweverOftenItIsKilled) {
     }
     EXPECT_EQ(Property(unit, "NRestarts"), std::to_string(kKills)) << unit;
   }
+}
+
+TEST_F(UnitsScanTest, F33AnEdgeThatIsKilledGoesOnWithItsScan) {
+  Prepare(2, Plays::kForEver);
+  ASSERT_EQ(Run({"systemctl", "start", kGround, kEdge}).status, 0);
+  const std::filesystem::path recordings = root() / "var/lib/isotherm/edge";
+  const auto files = [&recordings] {
+    std::vector<std::filesystem::path> found;
+    for (const auto& entry : std::filesystem::directory_iterator(recordings))
+      found.push_back(entry);
+    return found;
+  };
+  constexpr std::uintmax_t kSomeFrames_bytes = 500'000;
+  ASSERT_TRUE(Until(kPatience, [&] {
+    return JournalHas("first depth frame") && !files().empty() &&
+           std::filesystem::file_size(files().front()) > kSomeFrames_bytes;
+  }));
+  Run({"systemctl", "kill", "--kill-who", "main", "--signal", "KILL", kEdge});
+  ASSERT_TRUE(Until(kPatience, [&] { return JournalHas("was interrupted, and goes on"); }));
+  ASSERT_TRUE(Until(kPatience, [&] { return files().size() == 2; }));
+  ASSERT_TRUE(Until(kPatience, [&] {
+    return std::filesystem::file_size(files()[0]) > kSomeFrames_bytes &&
+           std::filesystem::file_size(files()[1]) > kSomeFrames_bytes;
+  }));
+  EXPECT_EQ(Run({"systemctl", "stop", kEdge}).status, 0);
+  ASSERT_TRUE(Until(kPatience, [&] { return JournalHas("results  "); }));
+  const auto stats = ReadStats(OnlyScan());
+  EXPECT_GT(NumberAt(stats, {"link", "depth", "dropped_by_rig", "lost_by_a_restart"}), 0.0);
+  EXPECT_EQ(NumberAt(stats, {"link", "depth", "missing"}), 0.0);
 }
 
 /// The results take longer than the service manager waits by itself: a disk that hangs for a while.
