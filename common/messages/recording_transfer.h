@@ -38,7 +38,7 @@ enum class RecordingOutcome : std::uint8_t {
   kNotThere,      ///< No such recording, or the end of the list.
   kBeingWritten,  ///< It grows; only the list tells of it.
   kUnreadable,    ///< The disk failed, or what is asked for lies beyond the end.
-  kBusy,          ///< A scan is under way, which has the link for itself.
+  kBusy,          ///< A scan has the link for itself, or a recording is being completed.
 };
 
 /// Answers a RecordingRequest.

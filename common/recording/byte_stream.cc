@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/file_descriptor.h"
 #include "common/base/sync_folder.h"
 
 namespace isotherm {
@@ -31,23 +32,6 @@ Status FromErrno(int error, std::string_view action, const std::filesystem::path
   if (error == ENOENT) return NotFound(std::move(message));
   return IoError(std::move(message));
 }
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&&) = delete;
-  ~FileDescriptor() { Close(); }
-
-  int get() const { return fd_; }
-  /// 0 or errno.
-  int Close() { return fd_ >= 0 && ::close(std::exchange(fd_, -1)) != 0 ? errno : 0; }
-
- private:
-  int fd_;
-};
 
 class FileSink final : public ByteSink {
  public:
@@ -91,15 +75,9 @@ class LockedFileEnd final : public FileEnd {
     struct stat before {};
     if (::fstat(fd_.get(), &before) != 0) return FromErrno(errno, "look at", path_);
     // Cut last: on a disk that is full nothing is gone.
-    while (!bytes.empty()) {
-      const ssize_t written =
-          ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return FromErrno(errno, "write", path_);
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-      offset += static_cast<std::uint64_t>(written);
-    }
-    if (::ftruncate(fd_.get(), static_cast<off_t>(offset)) != 0)
+    if (const int error = fd_.WriteAt(offset, bytes); error != 0)
+      return FromErrno(error, "write", path_);
+    if (::ftruncate(fd_.get(), static_cast<off_t>(offset + bytes.size())) != 0)
       return FromErrno(errno, "cut", path_);
     // What is in the file is as old as before. Best effort.
     const std::array<timespec, 2> times = {before.st_atim, before.st_mtim};

@@ -91,15 +91,22 @@ std::optional<OpenPart> OpenNewest(const std::vector<ListedRecording>& recording
   return std::nullopt;
 }
 
-/// Returns the files of the recording that are of the same scan and can be read, the first one
-/// first.
-std::vector<OpenPart> PartsOf(const OpenPart& one, std::vector<ListedRecording> recordings) {
+/// Returns the files of the recording that are of the same scan as `one` and can be read, that one
+/// among them, the first one first.
+std::vector<OpenPart> PartsOf(OpenPart one, std::vector<ListedRecording> recordings) {
+  const std::uint64_t session = SessionOf(one.reader->info());
+  const ListedRecording opened = one.listed;
   std::ranges::sort(recordings, {}, &ListedRecording::part);
   std::vector<OpenPart> parts;
   for (const ListedRecording& listed : recordings) {
-    if (listed.first != one.listed.first) continue;
+    if (listed.first != opened.first) continue;
+    // Opening a file that breaks off takes time: once is enough.
+    if (listed.path == opened.path) {
+      parts.push_back(std::move(one));
+      continue;
+    }
     Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(listed.path);
-    if (reader && SessionOf((*reader)->info()) == SessionOf(one.reader->info()))
+    if (reader && SessionOf((*reader)->info()) == session)
       parts.push_back({listed, std::move(*reader)});
   }
   return parts;
@@ -180,10 +187,10 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
                                                    Nanoseconds max_age) {
   if (max_age <= Nanoseconds(0) || IsDevice(record)) return std::nullopt;
   const std::vector<ListedRecording> recordings = ListRecordings(record);
-  const std::optional<OpenPart> found = OpenNewest(recordings, edge_id, now - max_age);
+  std::optional<OpenPart> found = OpenNewest(recordings, edge_id, now - max_age);
   if (!found || SessionOf(found->reader->info()) == 0) return std::nullopt;
   // Which part was written last says nothing: others may have been completed since.
-  const std::vector<OpenPart> parts = PartsOf(*found, recordings);
+  const std::vector<OpenPart> parts = PartsOf(std::move(*found), recordings);
   const bool has_ended = parts.empty() || parts.back().reader->info().complete ||
                          parts.back().listed.WrittenAt() < now - max_age ||
                          IsBeingWritten(parts.back().listed.path);

@@ -9,11 +9,11 @@
 #include <cerrno>
 #include <map>
 #include <memory>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "common/base/file_descriptor.h"
 #include "common/base/sync_folder.h"
 #include "common/recording/byte_stream.h"
 #include "common/recording/mcap_records.h"
@@ -46,37 +46,6 @@ bool IsPlainName(const std::string& name) {
 Status Failed(std::string_view action, const std::filesystem::path& path) {
   const std::string reason = std::generic_category().message(errno);
   return IoError(fmt::format("cannot {} {}: {}", action, path.string(), reason));
-}
-
-/// Closes a file in the end.
-class OwnedFile {
- public:
-  explicit OwnedFile(int file) : file_(file) {}
-  OwnedFile(const OwnedFile&) = delete;
-  OwnedFile& operator=(const OwnedFile&) = delete;
-  ~OwnedFile() {
-    if (file_ >= 0) ::close(file_);
-  }
-  int get() const { return file_; }
-
- private:
-  const int file_;
-};
-
-Status WriteAt(int file, std::uint64_t offset, std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      return IoError(
-          fmt::format("the disk does not take it: {}; what has come stays, and is gone "
-                      "on with the next time",
-                      std::generic_category().message(errno)));
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
-  }
-  return OkStatus();
 }
 
 Status Changed(const RemoteRecording& recording) {
@@ -280,14 +249,19 @@ Result<std::uint64_t> RecordingFetcher::CountSame(const RemoteRecording& recordi
   return same;
 }
 
-Status RecordingFetcher::ReadInto(const RemoteRecording& recording, std::uint64_t from, int file,
-                                  const Progress& progress) {
+Status RecordingFetcher::ReadInto(const RemoteRecording& recording, std::uint64_t from,
+                                  const FileDescriptor& file, const Progress& progress) {
   std::uint64_t done = from;
   return Exchange(
       InSteps(RecordingRequestKind::kRead, recording, from, recording.size, kPieceBytes),
       [&](const RecordingRequest& request, RecordingPiece&& piece) -> Status {
         ISOTHERM_RETURN_IF_ERROR(Check(piece, recording));
-        ISOTHERM_RETURN_IF_ERROR(WriteAt(file, request.offset, piece.bytes));
+        if (const int error = file.WriteAt(request.offset, piece.bytes); error != 0) {
+          return IoError(
+              fmt::format("the disk does not take it: {}; what has come stays, and is "
+                          "gone on with the next time",
+                          std::generic_category().message(error)));
+        }
         done += request.length;
         progress(done);
         return OkStatus();
@@ -318,7 +292,7 @@ Status RecordingFetcher::Fetch(const RemoteRecording& recording,
   }
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  const OwnedFile file(::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
+  const FileDescriptor file(::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
   if (file.get() < 0) return Failed("create", part);
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     return Unavailable(fmt::format("another isotherm fetch is at {}", part.string()));
@@ -326,7 +300,7 @@ Status RecordingFetcher::Fetch(const RemoteRecording& recording,
   const Result<std::uint64_t> same = CountSame(recording, part, progress);
   if (!same) return same.error();
   if (::ftruncate(file.get(), static_cast<off_t>(*same)) != 0) return Failed("write", part);
-  ISOTHERM_RETURN_IF_ERROR(ReadInto(recording, *same, file.get(), progress));
+  ISOTHERM_RETURN_IF_ERROR(ReadInto(recording, *same, file, progress));
   if (::fsync(file.get()) != 0) return Failed("write", part);
   std::filesystem::rename(part, target, error);
   if (error) return IoError(fmt::format("cannot name {}: {}", target.string(), error.message()));

@@ -16,6 +16,8 @@
 
 namespace isotherm {
 
+class FileDescriptor;
+
 /// A recording as a rig lists it.
 struct RemoteRecording {
   std::string name;
@@ -90,7 +92,7 @@ class RecordingFetcher {
   /// Returns how many bytes of the file are those of the recording, from its beginning on.
   Result<std::uint64_t> CountSame(const RemoteRecording& recording,
                                   const std::filesystem::path& file, const Progress& progress);
-  Status ReadInto(const RemoteRecording& recording, std::uint64_t from, int file,
+  Status ReadInto(const RemoteRecording& recording, std::uint64_t from, const FileDescriptor& file,
                   const Progress& progress);
 
   RecordingWay& way_;

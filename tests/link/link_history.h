@@ -22,6 +22,7 @@
 #include "edge/backfill/backfill.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/publisher/outgoing_stream.h"
+#include "edge/publisher/testing/idle_publisher.h"
 #include "edge/spool/interrupted_scan.h"
 #include "edge/spool/spool.h"
 #include "ground/subscriber/stream_receiver.h"
@@ -140,8 +141,10 @@ class GroundEnd {
 };
 
 /// The edge's end of the link as the daemon keeps it, without the middleware.
-class EdgeLink final : public Publisher {
+class EdgeLink final : public IdlePublisher {
  public:
+  using IdlePublisher::Publish;
+
   EdgeLink(const Clock& clock, LossyWay<AnyFrame>& way, std::mt19937& random)
       : clock_(clock), way_(way), random_(random) {}
 
@@ -179,15 +182,6 @@ class EdgeLink final : public Publisher {
   }
   std::optional<Receipt> receipt() const override { return receipt_; }
   std::uint64_t backfilled() const { return backfilled_; }
-
-  void Run(std::stop_token, const PublisherHandlers&) override {}
-  bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status Announce(const RigDescription&) override { return OkStatus(); }
-  Status Publish(const ExternalOdometrySample&, std::stop_token) override { return OkStatus(); }
-  Status Publish(EdgeStatus) override { return OkStatus(); }
-  Status Answer(const CommandResult&) override { return OkStatus(); }
-  bool Drain(Nanoseconds) override { return true; }
-  void SetPolicy(PublishPolicy) override {}
 
  private:
   OutgoingStream& Of(const AnyFrame& frame) { return streams_.at(IndexOf(SensorOf(frame))); }

@@ -9,13 +9,12 @@
 #include <cstdint>
 #include <optional>
 #include <random>
-#include <stop_token>
 #include <vector>
 
 #include "common/messages/frame_number_set.h"
 #include "common/messages/messages.h"
 #include "common/time/clock.h"
-#include "edge/publisher/publisher.h"
+#include "edge/publisher/testing/idle_publisher.h"
 
 namespace isotherm {
 
@@ -23,7 +22,7 @@ inline std::size_t SensorIndex(Sensor sensor) { return static_cast<std::size_t>(
 
 /// A link and a ground behind it, in virtual time: frames arrive after a delay or never, receipts
 /// tell of them.
-class SimulatedLink final : public Publisher {
+class SimulatedLink final : public IdlePublisher {
  public:
   static constexpr std::uint64_t kSession = 7;
 
@@ -90,19 +89,6 @@ class SimulatedLink final : public Publisher {
     return stats;
   }
   std::optional<Receipt> receipt() const override { return receipt_; }
-
-  // Not used by backfill.
-  void Run(std::stop_token, const PublisherHandlers&) override {}
-  bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status BeginSession(const RigDescription&, const SessionBefore&) override { return OkStatus(); }
-  Status Announce(const RigDescription&) override { return OkStatus(); }
-  Status Publish(const EncodedDepthFrame&, std::stop_token) override { return OkStatus(); }
-  Status Publish(const EncodedThermalFrame&, std::stop_token) override { return OkStatus(); }
-  Status Publish(const ExternalOdometrySample&, std::stop_token) override { return OkStatus(); }
-  Status Publish(EdgeStatus) override { return OkStatus(); }
-  Status Answer(const CommandResult&) override { return OkStatus(); }
-  bool Drain(Nanoseconds) override { return true; }
-  void SetPolicy(PublishPolicy) override {}
 
  private:
   struct Frame {
