@@ -93,22 +93,18 @@ std::optional<OpenPart> OpenNewest(const std::vector<ListedRecording>& recording
 
 /// Returns the files of the recording that are of the same scan as `one` and can be read, that one
 /// among them, the first one first.
-std::vector<OpenPart> PartsOf(OpenPart one, std::vector<ListedRecording> recordings) {
+std::vector<OpenPart> PartsOf(OpenPart one, const std::vector<ListedRecording>& recordings) {
   const std::uint64_t session = SessionOf(one.reader->info());
-  const ListedRecording opened = one.listed;
-  std::ranges::sort(recordings, {}, &ListedRecording::part);
   std::vector<OpenPart> parts;
   for (const ListedRecording& listed : recordings) {
-    if (listed.first != opened.first) continue;
     // Opening a file that breaks off takes time: once is enough.
-    if (listed.path == opened.path) {
-      parts.push_back(std::move(one));
-      continue;
-    }
+    if (listed.first != one.listed.first || listed.path == one.listed.path) continue;
     Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(listed.path);
     if (reader && SessionOf((*reader)->info()) == session)
       parts.push_back({listed, std::move(*reader)});
   }
+  parts.push_back(std::move(one));
+  std::ranges::sort(parts, {}, [](const OpenPart& part) { return part.listed.part; });
   return parts;
 }
 
@@ -191,7 +187,7 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
   if (!found || SessionOf(found->reader->info()) == 0) return std::nullopt;
   // Which part was written last says nothing: others may have been completed since.
   const std::vector<OpenPart> parts = PartsOf(std::move(*found), recordings);
-  const bool has_ended = parts.empty() || parts.back().reader->info().complete ||
+  const bool has_ended = parts.back().reader->info().complete ||
                          parts.back().listed.WrittenAt() < now - max_age ||
                          IsBeingWritten(parts.back().listed.path);
   if (has_ended) return std::nullopt;
