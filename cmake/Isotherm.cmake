@@ -1,9 +1,12 @@
 # The two helpers every folder uses. One target per folder: isotherm_<name> with the alias isotherm::<name>.
 
-# With ccache, a second clone or build tree compiles from the first one's cache: paths count relative to the root.
+# With ccache, a second clone or build tree compiles from the first one's cache: paths count relative to the root. It remembers
+# what a file's content was by the file's inode: reading 170 MB of precompiled headers for each source took 0.9 of 0.93 s.
+# A precompiled header that is compiled again in the same folder counts the one before among its inputs, and differs each time:
+# after a change of flags a build in a new folder is faster.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(ccache_launcher env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+  set(ccache_launcher env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_INODECACHE=1
     CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE_PROGRAM})
   set(CMAKE_C_COMPILER_LAUNCHER ${ccache_launcher})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ccache_launcher})
@@ -29,7 +32,9 @@ endif()
 # most of the work of a clean build. Sources still include what they use (the preset clang builds without this).
 option(ISOTHERM_PRECOMPILE "Precompile the headers of others" ON)
 if(ISOTHERM_PRECOMPILE AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")  # Else ccache never finds it again.
+  # Else ccache never finds it again; and it preprocesses the headers for sources that do not use Eigen, too.
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
+  link_libraries(Eigen3::Eigen)
 endif()
 
 # Kernels are compiled for each instruction set, and under sanitizers take longest of all to compile. The release build tests
@@ -143,7 +148,7 @@ endif()
 # Tests of what has several threads: the thread sanitizer watches these (tests/lint says which are missing).
 set(isotherm_threaded_tests backfill_test base_test block_spiller_test camera_process_test clock_link_test concurrency_test
   edge_pipeline_test edge_source_test endpoints_test flow_window_test frame_counters_test ground_pipeline_test hostile_test
-  link_test live_scan_test nuc_control_test openni_test process_test reconstruction_loop_test recording_loop_test
+  link_emulator_test link_test live_scan_test nuc_control_test openni_test process_test reconstruction_loop_test recording_loop_test
   result_writer_test rig_clock_test rig_commander_test rig_gate_test service_test spool_test thermal_test trust_test
   tsdf_test wire_version_test)
 
