@@ -22,7 +22,7 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
   libexpected-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   libzstd-dev zlib1g-dev libpng-dev libsystemd-dev
   libusb-1.0-0-dev libopenni2-dev
-  libboost1.81-dev libssl-dev libmeshoptimizer-dev libqrencode-dev
+  libboost1.81-dev libssl-dev libmeshoptimizer-dev libqrencode-dev libisal-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-features2d-dev libceres-dev"
 

@@ -14,4 +14,19 @@ inline bool HasBacklog(const EdgeStatus& status) {
   return status.spool_frames > kUsual;
 }
 
+/// The reason in EdgeStatus for frames that the rig has not sent while they were new, because the
+/// link is too narrow for all of them.
+inline constexpr const char* kLeftForLater = "left for later";
+
+/// Returns how many frames wait on the rig for that reason.
+inline std::uint64_t LeftForLater(const EdgeStatus& status) {
+  std::uint64_t frames = 0;
+  for (const StreamStatus* stream : {&status.depth, &status.thermal}) {
+    for (const DropCount& drop : stream->dropped) {
+      if (drop.reason == kLeftForLater) frames += drop.frames;
+    }
+  }
+  return frames;
+}
+
 }  // namespace isotherm

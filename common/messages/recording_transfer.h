@@ -20,6 +20,7 @@ enum class RecordingRequestKind : std::uint8_t {
   kList,      ///< One entry of the list of recordings, by its place; the newest is the first.
   kRead,      ///< Bytes of a recording.
   kChecksum,  ///< The checksum of bytes of a recording.
+  kKept,      ///< None: whoever asks has the whole recording, of `offset` bytes, on a disk.
 };
 
 /// Asks a rig for a recording, or for what there is.

@@ -27,12 +27,15 @@ void CopyText(std::string_view text, char (&to)[kSize]) {
 }
 
 /// Text of a peer; control characters become '?', so that it can be logged and shown.
-template <std::size_t kSize>
-std::string ReadText(const char (&from)[kSize]) {
-  std::string text(from, strnlen(from, kSize));
+inline std::string Showable(std::string_view from) {
+  std::string text(from);
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
   return text;
+}
+template <std::size_t kSize>
+std::string ReadText(const char (&from)[kSize]) {
+  return Showable({from, strnlen(from, kSize)});
 }
 
 }  // namespace isotherm

@@ -23,6 +23,8 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to);
 void ToWire(const Hello& from, isotherm_wire_Hello* to);
 void ToWire(const RecordingRequest& from, isotherm_wire_RecordingRequest* to);
 void ToWire(const RecordingPiece& from, isotherm_wire_RecordingPiece* to);
+void ToWire(const FramePiece& from, isotherm_wire_FramePiece* to);
+void ToWire(const PieceReport& from, isotherm_wire_PieceReport* to);
 
 /// Fills `to`, or says why `from` cannot be used. Frames are checked before their payload is
 /// copied.
@@ -41,6 +43,8 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Hello& from, Hello* to)
 std::optional<RefusalCause> FromWire(const isotherm_wire_RecordingRequest& from,
                                      RecordingRequest* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_RecordingPiece& from, RecordingPiece* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_FramePiece& from, FramePiece* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_PieceReport& from, PieceReport* to);
 
 /// A frame is the same on the wire whichever way it takes.
 template <typename Frame, typename Wire>

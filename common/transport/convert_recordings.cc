@@ -26,7 +26,7 @@ void ToWire(const RecordingRequest& from, isotherm_wire_RecordingRequest* to) {
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_RecordingRequest& from,
                                      RecordingRequest* to) {
-  if (const auto cause = CheckEnum(from.kind, RecordingRequestKind::kChecksum)) return cause;
+  if (const auto cause = CheckEnum(from.kind, RecordingRequestKind::kKept)) return cause;
   const auto kind = static_cast<RecordingRequestKind>(from.kind);
   const std::size_t max_length =
       kind == RecordingRequestKind::kChecksum ? kMaxChecksumBytes : kMaxPieceBytes;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <isotherm_control.h>
 #include <isotherm_frames.h>
+#include <isotherm_pieces.h>
 #include <isotherm_recordings.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
 #include "common/transport/instance_limit.h"
+#include "common/transport/peer_guid.h"
 #include "common/transport/qos.h"
 
 namespace isotherm {
@@ -43,6 +45,10 @@ const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
       return &isotherm_wire_RecordingRequest_desc;
     case TopicId::kRecordingPiece:
       return &isotherm_wire_RecordingPiece_desc;
+    case TopicId::kFramePiece:
+      return &isotherm_wire_FramePiece_desc;
+    case TopicId::kPieceReport:
+      return &isotherm_wire_PieceReport_desc;
     case TopicId::kHello:
       return &isotherm_wire_Hello_desc;
     case TopicId::kExternalOdometry:
@@ -63,18 +69,12 @@ Status CreateTopic(const Participant& participant, TopicId topic, DdsHandle* han
   return handle->value() > 0 ? OkStatus() : CreationFailed("topic", topic, handle->value());
 }
 
-/// Takes what dds_get_matched_*_data gives; may be null. Made from the participant's GUID (FNV-1a):
-/// when an outage lets the middleware forget a participant, it comes back with another instance
-/// handle, but with the same GUID.
+/// Takes what dds_get_matched_*_data gives; may be null.
 PeerHandle TakePeer(dds_builtintopic_endpoint_t* endpoint) {
   if (endpoint == nullptr) return 0;
-  PeerHandle peer = 0xCBF29CE484222325ULL;
-  for (const std::uint8_t byte : endpoint->participant_key.v) {
-    peer = (peer ^ byte) * 0x100000001B3ULL;
-  }
+  const PeerHandle peer = PeerOfGuid(endpoint->participant_key);
   dds_builtintopic_free_endpoint(endpoint);
-  // 0 means that nobody is known.
-  return peer == 0 ? 1 : peer;
+  return peer;
 }
 
 /// A wire struct with the lists that ToWire allocated.
@@ -334,6 +334,8 @@ template class Writer<Feedback>;
 template class Writer<Hello>;
 template class Writer<RecordingRequest>;
 template class Writer<RecordingPiece>;
+template class Writer<FramePiece>;
+template class Writer<PieceReport>;
 
 template class Reader<EncodedDepthFrame>;
 template class Reader<EncodedThermalFrame>;
@@ -349,5 +351,7 @@ template class Reader<Feedback>;
 template class Reader<Hello>;
 template class Reader<RecordingRequest>;
 template class Reader<RecordingPiece>;
+template class Reader<FramePiece>;
+template class Reader<PieceReport>;
 
 }  // namespace isotherm

@@ -14,8 +14,8 @@
 
 /// Typed ends of the topics of the link. Message is one of EncodedDepthFrame, EncodedThermalFrame,
 /// both of them Backfilled, RigDescription, ExternalOdometrySample, EdgeStatus, Command,
-/// CommandResult, Receipt, Feedback, Hello, RecordingRequest, RecordingPiece; the topic and its QoS
-/// follow from it (qos.cc).
+/// CommandResult, Receipt, Feedback, Hello, RecordingRequest, RecordingPiece, FramePiece,
+/// PieceReport; the topic and its QoS follow from it (qos.cc).
 namespace isotherm {
 
 /// A participant of the domain as this process knows it; 0 = none.

@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "common/transport/announced_peers.h"
 #include "common/transport/instance_limit.h"
 #include "common/transport/qos.h"
 #include "common/transport/testing/example_messages.h"
@@ -105,6 +106,31 @@ TEST_F(EndpointsTest, DomainMustExist) {
   EXPECT_EQ(Participant::Create(environment_, -1).error().code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(Participant::Create(environment_, kMaxDomainId + 1).error().code(),
             StatusCode::kInvalidArgument);
+}
+
+TEST_F(EndpointsTest, AnnouncedPeersAreThereUntilTheyLeave) {
+  const Announcement rig{Role::kEdge, "drone-2", "raspi"};
+  const auto join = [&](const std::optional<Announcement>& announcement) {
+    return std::move(*Participant::Create(environment_, domain_.number(), announcement));
+  };
+  const auto ground = join(Announcement{Role::kGround, "", "desk"});
+  AnnouncedPeers peers;
+  ASSERT_TRUE(peers.Open(*ground).ok());
+  const auto wait_for = [&](std::size_t count) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (peers.Of(Role::kEdge).size() != count && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(10ms);
+    return peers.Of(Role::kEdge);
+  };
+  {
+    const auto silent = join(std::nullopt);
+    const auto edge = join(rig);
+    const auto found = wait_for(1);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found.begin()->second, rig);
+    EXPECT_EQ(peers.Of(Role::kGround).size(), 1U) << "this one itself";
+  }
+  EXPECT_TRUE(wait_for(0).empty());
 }
 
 }  // namespace

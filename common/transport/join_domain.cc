@@ -18,8 +18,10 @@ constexpr Nanoseconds kReportInterval = std::chrono::milliseconds(250);
 Result<std::unique_ptr<Participant>> JoinDomain(const TransportEnvironment& environment,
                                                 int domain_id, const Clock& clock,
                                                 const std::stop_token& stop,
-                                                const WaitingForNetwork& waiting) {
-  Result<std::unique_ptr<Participant>> joined = Participant::Create(environment, domain_id);
+                                                const WaitingForNetwork& waiting,
+                                                const Announcement& announcement) {
+  const auto join = [&] { return Participant::Create(environment, domain_id, announcement); };
+  Result<std::unique_ptr<Participant>> joined = join();
   const bool waits = !joined && joined.error().code() == StatusCode::kUnavailable;
   if (!waits) return joined;
   LOG(Transport, Warning) << joined.error().message() << "; trying again until it works";
@@ -33,7 +35,7 @@ Result<std::unique_ptr<Participant>> JoinDomain(const TransportEnvironment& envi
       waiting(joined.error());
       Pause(stop, std::min<Nanoseconds>(due - now, kReportInterval));
     }
-    if (!stop.stop_requested()) joined = Participant::Create(environment, domain_id);
+    if (!stop.stop_requested()) joined = join();
   }
   if (joined) {
     LOG(Transport, Info) << "joined DDS domain " << domain_id;

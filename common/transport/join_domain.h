@@ -19,6 +19,7 @@ using WaitingForNetwork = std::function<void(const Status& reason)>;
 Result<std::unique_ptr<Participant>> JoinDomain(const TransportEnvironment& environment,
                                                 int domain_id, const Clock& clock,
                                                 const std::stop_token& stop,
-                                                const WaitingForNetwork& waiting);
+                                                const WaitingForNetwork& waiting,
+                                                const Announcement& announcement);
 
 }  // namespace isotherm

@@ -11,20 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class MessageRoundTripTest : public JoinedEndsTest {
- protected:
-  /// Writes `message` and returns what arrives at the other side.
-  template <typename Message>
-  std::optional<Received<Message>> RoundTrip(const Message& message) {
-    Reader<Message> reader;
-    EXPECT_TRUE(reader.Open(*ground_, &refusals_).ok());
-    Writer<Message> writer;
-    EXPECT_TRUE(writer.Open(*edge_).ok());
-    AwaitMatch(writer, 1);
-    EXPECT_TRUE(writer.Write("edge-1", message).ok());
-    return TakeOne(reader);
-  }
-};
+using MessageRoundTripTest = JoinedEndsTest;
 
 EncodedDepthFrame MakeDepth(std::uint64_t number) {
   EncodedDepthFrame frame;

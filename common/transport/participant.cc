@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "common/transport/qos.h"
+
 namespace isotherm {
 
 DdsHandle::DdsHandle(DdsHandle&& other) noexcept : value_(std::exchange(other.value_, 0)) {}
@@ -28,14 +30,20 @@ std::string ReasonOf(const TransportEnvironment& environment, dds_return_t code)
 
 }  // namespace
 
-Result<std::unique_ptr<Participant>> Participant::Create(const TransportEnvironment& environment,
-                                                         int domain_id) {
+Result<std::unique_ptr<Participant>> Participant::Create(
+    const TransportEnvironment& environment, int domain_id,
+    const std::optional<Announcement>& announcement) {
   if (domain_id < 0 || domain_id > kMaxDomainId) {
     return Err(
         InvalidArgument(fmt::format("DDS domain {} is outside 0..{}", domain_id, kMaxDomainId)));
   }
+  const QosPtr qos(dds_create_qos());
+  if (announcement) {
+    const std::string text = ToText(*announcement);
+    dds_qset_userdata(qos.get(), text.data(), text.size());
+  }
   DdsHandle handle(
-      dds_create_participant(static_cast<dds_domainid_t>(domain_id), nullptr, nullptr));
+      dds_create_participant(static_cast<dds_domainid_t>(domain_id), qos.get(), nullptr));
   if (handle.value() < 0) {
     return Err(Unavailable(
         fmt::format("cannot join DDS domain {} ({}); check the profile in CYCLONEDDS_URI and that "

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "common/base/status.h"
+#include "common/transport/announcement.h"
 #include "common/transport/transport_environment.h"
 
 namespace isotherm {
@@ -32,9 +34,10 @@ class Participant {
  public:
   /// kInvalidArgument for a domain outside 0..kMaxDomainId; kUnavailable if the middleware cannot
   /// start, e.g. because of a wrong profile in CYCLONEDDS_URI (the middleware's reason is in the
-  /// log).
-  static Result<std::unique_ptr<Participant>> Create(const TransportEnvironment& environment,
-                                                     int domain_id);
+  /// log). It says to the domain what `announcement` says, if there is one.
+  static Result<std::unique_ptr<Participant>> Create(
+      const TransportEnvironment& environment, int domain_id,
+      const std::optional<Announcement>& announcement = std::nullopt);
   std::int32_t handle() const { return handle_.value(); }
 
  private:

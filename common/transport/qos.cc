@@ -8,8 +8,7 @@
 namespace isotherm {
 namespace {
 
-/// Says how one topic is carried. All are reliable and keep-last: keep-all would let an outage
-/// block the writer.
+/// Says how one topic is carried. All are keep-last: keep-all would let an outage block the writer.
 struct Profile {
   const char* name;
   /// Samples kept per rig, on both sides.
@@ -22,10 +21,13 @@ struct Profile {
   dds_duration_t max_blocking;
   /// A writer that is silent for this long counts as gone. The middleware keeps it alive by itself.
   dds_duration_t liveliness;
+  bool reliable = true;  ///< It sends again what is lost.
 };
 
 // See MakeReaderQos. Sixteen samples of small topics are kilobytes.
 constexpr std::int32_t kMinReaderHistory = 16;
+// A third of a second of both cameras: so long may the ground's thread be away.
+constexpr std::int32_t kPieceHistory = 1024;
 constexpr dds_duration_t kFrameBlocking = kMaxFrameBlocking.count();
 constexpr dds_duration_t kSmallBlocking = kMaxMessageBlocking.count();
 // Smaller: a peer on a busy network or computer counts as gone while it is there; larger: a link
@@ -35,7 +37,7 @@ constexpr dds_duration_t kLease = DDS_SECS(1);
 // The major version is in the names, so that what a peer of another one sends is not even
 // delivered. The hello has none, and its type is frozen: it is how they tell each other.
 static_assert(kWireMajor == 3);
-constexpr std::array<Profile, 14> kProfiles = {{
+constexpr std::array<Profile, 16> kProfiles = {{
     {"isotherm/3/depth", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/3/thermal", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/3/rig", 1, true, kSmallBlocking, kLease},
@@ -53,6 +55,8 @@ constexpr std::array<Profile, 14> kProfiles = {{
     // Whoever asks keeps no more than that under way (kMaxRecordingRequests), and asks again.
     {"isotherm/3/recording_request", kRecordingHistory, false, kSmallBlocking, kLease},
     {"isotherm/3/recording_piece", kRecordingHistory, false, kFrameBlocking, kLease},
+    {"isotherm/3/frame_piece", kPieceHistory, false, kSmallBlocking, kLease, false},
+    {"isotherm/3/piece_report", 1, false, kSmallBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }
@@ -66,7 +70,9 @@ const char* TopicName(TopicId topic) { return ProfileOf(topic).name; }
 QosPtr MakeQos(TopicId topic) {
   const Profile& profile = ProfileOf(topic);
   QosPtr qos(dds_create_qos());
-  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, profile.max_blocking);
+  dds_qset_reliability(qos.get(),
+                       profile.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       profile.max_blocking);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, profile.history);
   dds_qset_durability(qos.get(), profile.keep_for_late_joiners ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                                : DDS_DURABILITY_VOLATILE);

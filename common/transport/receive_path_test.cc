@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <isotherm_control.h>
 #include <isotherm_frames.h>
+#include <isotherm_pieces.h>
 #include <isotherm_recordings.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20'260'314;
 constexpr std::uint64_t kDefaultInputs = 1'000'000;  // Seconds.
-constexpr std::uint64_t kTopics = 10;
+constexpr std::uint64_t kTopics = 14;
 constexpr std::size_t kHeaderBytes = 4;
 constexpr std::size_t kLengthBytes = 4;  // The length before the members of an appendable type.
 
@@ -177,6 +178,15 @@ bool IsSound(const Receipt& receipt) {
   return receipt.depth.handled <= receipt.depth.next && receipt.thermal.holes.size() <= 64 &&
          IsOneOf(receipt.verdict, 2);
 }
+bool IsSound(const FramePiece& piece) {
+  return IsOneOf(piece.sensor, 2) && piece.bytes.size() >= kMinFramePieceBytes &&
+         piece.bytes.size() <= kMaxFramePieceBytes && piece.frame_bytes > 0 &&
+         piece.frame_bytes <= kMaxPiecedFrameBytes && piece.sent.count() >= 0;
+}
+bool IsSound(const PieceReport& report) {
+  return report.received <= report.next_order && report.frames <= report.received &&
+         report.broken <= report.received && report.queued.count() >= 0;
+}
 bool IsSound(const Feedback& feedback) {
   return IsOneOf(feedback.tracking_state, 4) && feedback.advice.size() <= 8 &&
          std::ranges::all_of(feedback.advice, [](Advice a) { return IsOneOf(a, 8); }) &&
@@ -187,7 +197,7 @@ bool IsSound(const Hello& hello) {
   return IsOneOf(hello.role, 2) && IsShort(hello.host, 256) && IsShort(hello.software_version, 256);
 }
 bool IsSound(const RecordingRequest& request) {
-  return IsOneOf(request.kind, 3) && IsShort(request.recording, 256) &&
+  return IsOneOf(request.kind, 4) && IsShort(request.recording, 256) &&
          request.offset <= std::uint64_t{1} << 60U &&
          request.length <= (request.kind == RecordingRequestKind::kChecksum ? 4U << 20U : 65'536U);
 }
@@ -341,6 +351,12 @@ TEST_F(ReceivePathTest, F60AnyBytesAsARequestForARecording) {
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsAPieceOfARecording) {
   Run<RecordingPiece>(isotherm_wire_RecordingPiece_desc);
+}
+TEST_F(ReceivePathTest, F60AnyBytesAsAPieceOfAFrame) {
+  Run<FramePiece>(isotherm_wire_FramePiece_desc);
+}
+TEST_F(ReceivePathTest, F60AnyBytesAsAReportOfPieces) {
+  Run<PieceReport>(isotherm_wire_PieceReport_desc);
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsAStatus) { Run<EdgeStatus>(isotherm_wire_EdgeStatus_desc); }
 TEST_F(ReceivePathTest, F60AnyBytesAsACommand) { Run<Command>(isotherm_wire_Command_desc); }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "common/messages/frame_piece.h"
 #include "common/messages/messages.h"
 #include "common/messages/recording_transfer.h"
 
@@ -18,6 +19,8 @@ struct isotherm_wire_Feedback;
 struct isotherm_wire_Hello;
 struct isotherm_wire_RecordingRequest;
 struct isotherm_wire_RecordingPiece;
+struct isotherm_wire_FramePiece;
+struct isotherm_wire_PieceReport;
 
 namespace isotherm {
 
@@ -37,6 +40,8 @@ enum class TopicId : std::uint8_t {
   kBackfillThermal,
   kRecordingRequest,
   kRecordingPiece,
+  kFramePiece,
+  kPieceReport,
 };
 
 /// Relates a message to its topic and to the type that idlc generated for it.
@@ -111,6 +116,16 @@ template <>
 struct TopicOf<RecordingPiece> {
   using Wire = ::isotherm_wire_RecordingPiece;
   static constexpr TopicId kId = TopicId::kRecordingPiece;
+};
+template <>
+struct TopicOf<FramePiece> {
+  using Wire = ::isotherm_wire_FramePiece;
+  static constexpr TopicId kId = TopicId::kFramePiece;
+};
+template <>
+struct TopicOf<PieceReport> {
+  using Wire = ::isotherm_wire_PieceReport;
+  static constexpr TopicId kId = TopicId::kPieceReport;
 };
 
 }  // namespace isotherm

@@ -55,13 +55,24 @@ std::vector<FrameRange> GivenUp(const StreamReceipt& receipt) {
   return given_up;
 }
 
+/// Returns whether the ground has more holes than it tells.
+bool HasMoreHoles(const StreamReceipt& receipt) {
+  return receipt.holes.size() >= kMaxHoles && receipt.holes.front().first > 0;
+}
+
+/// Returns how many frames the ground has below the first hole that it tells.
+std::uint64_t ReceivedBelow(const StreamReceipt& receipt) {
+  const std::uint64_t from_there =
+      receipt.next - receipt.holes.front().first - Frames(receipt.holes);
+  return receipt.received - std::min(receipt.received, from_there);
+}
+
 /// Returns what of the frames under way cannot be said to have arrived; `missing` are the holes and
 /// what is behind them.
 std::vector<FrameRange> NotConfirmed(const StreamReceipt& receipt,
                                      std::vector<FrameRange> missing) {
   // Of more holes only the newest are told.
-  const bool has_more = receipt.holes.size() >= kMaxHoles && receipt.holes.front().first > 0;
-  if (has_more) missing.insert(missing.begin(), {0, receipt.holes.front().first - 1});
+  if (HasMoreHoles(receipt)) missing.insert(missing.begin(), {0, receipt.holes.front().first - 1});
   return missing;
 }
 
@@ -82,14 +93,14 @@ Backfill::Backfill(const BackfillOptions& options, const BackfillParts& parts)
 void Backfill::Run(const std::stop_token& stop) {
   while (!stop.stop_requested() && !settled_) {
     progress_.Busy(parts_.clock.SteadyNow());
-    const bool sent = Step();
+    const bool sent = Step(stop);
     progress_.Idle();
     if (!sent) Pause(stop, kLookInterval / 4);
   }
   reader_.Close();
 }
 
-bool Backfill::Step() {
+bool Backfill::Step(const std::stop_token& stop) {
   if (settled_) return false;
   const SteadyTime now = parts_.clock.SteadyNow();
   // Asked before the receipt: what was captured last is then known when it is counted what lacks.
@@ -101,7 +112,7 @@ bool Backfill::Step() {
     if (source_has_ended) Settle(now);
   }
   if (!receipt_ || now < retry_at_ || !window_.MaySend(now)) return false;
-  return SendNext(now);
+  return SendNext(now, stop);
 }
 
 void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
@@ -115,6 +126,11 @@ void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
     // What is behind the newest that arrived may be on its way, or wait on this side.
     missing.push_back({stream->next, std::numeric_limits<std::uint64_t>::max()});
     lacking += Frames(parts_.recorded.Of(sensor, missing));
+    if (HasMoreHoles(*stream)) {
+      const std::uint64_t recorded =
+          Frames(parts_.recorded.Of(sensor, {{0, stream->holes.front().first - 1}}));
+      lacking += recorded - std::min(recorded, ReceivedBelow(*stream));
+    }
     NoteLost(sensor, window_.OnReceipt(sensor, NotConfirmed(*stream, missing), now));
     wanted_[static_cast<std::size_t>(sensor)] =
         parts_.recorded.Of(sensor, is_stalled_ ? missing : GivenUp(*stream));
@@ -139,8 +155,13 @@ void Backfill::NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames)
 
 void Backfill::Settle(SteadyTime now) {
   const std::uint64_t lacking = lacking_;
-  if (!std::exchange(is_ending_, true) || lacking < lacked_) progress_at_ = now;
+  // Where a hole is filled, an older one is told instead, so that as many may lack as before.
+  const std::uint64_t received =
+      receipt_ ? receipt_->depth.received + receipt_->thermal.received : 0;
+  if (!std::exchange(is_ending_, true) || lacking < lacked_ || received > received_)
+    progress_at_ = now;
   lacked_ = lacking;
+  received_ = received;
   const PublisherStats link = parts_.publisher.stats();
   // One that never said anything is not waited for; it may be about to, if it is there.
   const bool is_awaited = receipt_ ? lacking > 0 : link.takes_backfill;
@@ -223,7 +244,7 @@ void Backfill::NotePassed(Sensor sensor, std::uint64_t number) {
   passed = number;
 }
 
-bool Backfill::SendNext(SteadyTime now) {
+bool Backfill::SendNext(SteadyTime now, const std::stop_token& stop) {
   const std::optional<Target> target = FindTarget();
   if (!target || !MayDisturb(now) || !GoTo(*target, now)) return false;
   for (int read = 0; read < kFramesPerStep; ++read) {
@@ -240,7 +261,7 @@ bool Backfill::SendNext(SteadyTime now) {
     const std::uint64_t number = HeaderOf(**frame).frame_number;
     NotePassed(sensor, number);
     if (!IsWanted(sensor, number)) continue;
-    Send(**frame, now);
+    Send(**frame, now, stop);
     return true;
   }
   return false;  // Goes on from there.
@@ -259,9 +280,9 @@ bool Backfill::MayDisturb(SteadyTime now) {
   if (now < may_disturb_until_ && !parts_.is_live_behind()) return true;
   const PublisherStats link = parts_.publisher.stats();
   const bool live_is_behind =
-      !source_ended_ &&
-      (parts_.is_live_behind() || IsBehind(Sensor::kDepth, link.depth, receipt_->depth, now) ||
-       IsBehind(Sensor::kThermal, link.thermal, receipt_->thermal, now));
+      !source_ended_ && (parts_.is_live_behind() || link.leaves_frames ||
+                         IsBehind(Sensor::kDepth, link.depth, receipt_->depth, now) ||
+                         IsBehind(Sensor::kThermal, link.thermal, receipt_->thermal, now));
   if (!live_is_behind && link.takes_backfill) {
     may_disturb_until_ = now + kLookInterval;
     return true;
@@ -271,15 +292,23 @@ bool Backfill::MayDisturb(SteadyTime now) {
   return false;
 }
 
-void Backfill::Send(const RecordedFrameReader::Frame& frame, SteadyTime now) {
+void Backfill::Send(const RecordedFrameReader::Frame& frame, SteadyTime now,
+                    const std::stop_token& stop) {
   if (!std::exchange(reported_, true)) {
     LOG(Edge, Info) << "the ground lacks frames of the recording, and is sent them: " << lacking_;
   }
   const Sensor sensor = SensorOf(frame);
   // Entered first: a frame that the link refuses is tried again after kLostAfter, not at once.
-  window_.OnSent(sensor, HeaderOf(frame).frame_number, now);
-  const Result<bool> sent =
-      std::visit([this](const auto& content) { return parts_.publisher.Backfill(content); }, frame);
+  const std::uint64_t number = HeaderOf(frame).frame_number;
+  window_.OnSent(sensor, number, now);
+  const auto& tries = tries_[static_cast<std::size_t>(sensor)];
+  const auto tried = tries.find(number);
+  const Result<bool> sent = std::visit(
+      [&](const auto& content) {
+        return parts_.publisher.Backfill(content, tried == tries.end() ? 0 : tried->second, stop);
+      },
+      frame);
+  window_.OnLeft(sensor, number, parts_.clock.SteadyNow());
   if (sent && *sent) parts_.counters.CountPublishedAfterAll(sensor);
 }
 

@@ -55,7 +55,7 @@ class Backfill {
   /// Calls Step again and again until stop is requested or all is settled.
   void Run(const std::stop_token& stop);
   /// Does what is due by now. Returns whether a frame was sent.
-  bool Step();
+  bool Step(const std::stop_token& stop = {});
 
   /// The source has ended, and all its frames are recorded and published, or dropped.
   void NoteEnd() { source_ended_ = true; }
@@ -81,7 +81,7 @@ class Backfill {
   /// Says whether the end has come, by the newest receipt; the source has ended.
   void Settle(SteadyTime now);
   /// Sends the next frame that is wanted; false if there is none, or none can be read by now.
-  bool SendNext(SteadyTime now);
+  bool SendNext(SteadyTime now, const std::stop_token& stop);
   /// Returns whether a frame may be sent now without delaying what is live.
   bool MayDisturb(SteadyTime now);
   bool IsWanted(Sensor sensor, std::uint64_t number) const;
@@ -101,7 +101,7 @@ class Backfill {
   bool GoTo(const Target& target, SteadyTime now);
   /// The reader has come to this frame: those wanted before it that it did not meet are not there.
   void NotePassed(Sensor sensor, std::uint64_t number);
-  void Send(const RecordedFrameReader::Frame& frame, SteadyTime now);
+  void Send(const RecordedFrameReader::Frame& frame, SteadyTime now, const std::stop_token& stop);
 
   const BackfillOptions options_;
   const BackfillParts parts_;
@@ -120,8 +120,9 @@ class Backfill {
   int failures_ = 0;  ///< To open the file, in a row.
   /// Tells of each stream what was published last, by Sensor, and since when.
   std::array<std::pair<std::uint64_t, SteadyTime>, 2> newest_published_{};
-  SteadyTime progress_at_{};  ///< Since the source has ended.
-  std::uint64_t lacked_ = 0;  ///< At that time.
+  SteadyTime progress_at_{};    ///< Since the source has ended.
+  std::uint64_t lacked_ = 0;    ///< At that time.
+  std::uint64_t received_ = 0;  ///< By the ground, at that time.
   bool is_ending_ = false;
   bool is_stalled_ = false;  ///< Nothing that was published comes by itself any more.
   ThreadProgress progress_;

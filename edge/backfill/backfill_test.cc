@@ -60,7 +60,10 @@ class BackfillTest : public ::testing::Test {
     depth.depth_scale = 1000.0;
     Write(Sensor::kDepth, depth);
     Write(Sensor::kThermal, EncodedThermalFrame());
-    for (const Sensor sensor : kSensors) link_->SendLive(sensor, next_.at(SensorIndex(sensor))++);
+    for (const Sensor sensor : kSensors) {
+      const std::uint64_t number = next_.at(SensorIndex(sensor))++;
+      if (sends_live_) link_->SendLive(sensor, number);
+    }
     Pass(kPeriod);
   }
   void Pass(Nanoseconds time) {
@@ -95,8 +98,39 @@ class BackfillTest : public ::testing::Test {
   std::array<std::uint64_t, 2> next_{};
   FrameCounters counters_;
   bool live_is_behind_ = false;
+  bool sends_live_ = true;
   std::optional<Backfill> backfill_;
 };
+
+TEST_F(BackfillTest, F28EverySecondFrameLeftForMinutesComesAllTheSame) {
+  link_->leaves_frames = true;
+  for (int i = 0; i < 9000; ++i) {
+    sends_live_ = i % 2 == 0;  // Each that is left is a hole of its own.
+    Capture();
+  }
+  EXPECT_EQ(link_->backfilled, 0U) << "there is no room";
+  EXPECT_GT(backfill_->lacking(), 8900U) << "the ground tells the newest holes only";
+  link_->leaves_frames = false;
+  End();
+  const SteadyTime end = clock_->SteadyNow();
+  for (int i = 0; i < 600 && !backfill_->is_settled(); ++i) Pass(1s);
+  EXPECT_TRUE(backfill_->is_settled());
+  EXPECT_EQ(Missing(), 0U);
+  EXPECT_LE(clock_->SteadyNow() - end, 60s) << "from the newest to the oldest, and not one by one";
+}
+
+TEST_F(BackfillTest, NumbersThatNobodyHasAreNotLackingHoweverManyHolesTheyAre) {
+  for (int i = 0; i < 300; ++i) {
+    Capture();
+    for (std::uint64_t& next : next_) ++next;
+  }
+  Pass(1s);
+  EXPECT_EQ(backfill_->lacking(), 0U);
+  End();
+  Pass(100ms);
+  EXPECT_TRUE(backfill_->is_settled()) << "nothing is waited for";
+  EXPECT_EQ(link_->backfilled, 0U);
+}
 
 TEST_F(BackfillTest, SendsWhatAnOutageHasCostWhileTheScanGoesOn) {
   CaptureFor(1s);

@@ -68,6 +68,12 @@ class BackfillWindow {
     next_ = std::max(next_, now - kBurst) + FromSeconds(1.0 / frames_per_s_);
   }
 
+  /// The last of it has left only now.
+  void OnLeft(Sensor sensor, std::uint64_t number, SteadyTime now) {
+    const auto found = UnderWay(sensor).find(number);
+    if (found != UnderWay(sensor).end()) found->second = now;
+  }
+
   bool MaySend(SteadyTime now) const { return !IsFull() && now >= next_; }
   bool IsUnderWay(Sensor sensor, std::uint64_t number) const {
     return under_way_[static_cast<std::size_t>(sensor)].contains(number);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/base/processor_time.h"
 #include "common/doubts/calibration_doubts.h"
@@ -20,6 +21,7 @@
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
 #include "common/transport/join_domain.h"
+#include "common/transport/network_addresses.h"
 #include "edge/daemon/capture.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
@@ -28,7 +30,7 @@
 #include "edge/daemon/session_start.h"
 #include "edge/daemon/stop_limits.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/publisher/late_publisher.h"
+#include "edge/publisher/renewable_publisher.h"
 #include "edge/recording_server/recording_server.h"
 #include "edge/spool/recording_files.h"
 #include "edge/spool/recording_name.h"
@@ -116,7 +118,15 @@ Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const EdgeS
   auto spool = std::make_unique<Spool>(SpoolParts{
       [files] { return files->Next(); }, [path] { return FreeDiskBytes(*path); }, options.spool(),
       clock, counters, [files](const RigUpdate& update) { files->Update(update); },
-      before ? &*before : nullptr});
+      before ? &*before : nullptr,
+      [record = options.spool().record()] { return RecordingsSize(record); },
+      [record = options.spool().record(), path] { return FetchedSize(record, *path); },
+      [record = options.spool().record(), path] { return DeleteOldestFetched(record, *path); }});
+  if (options.spool().when_full() == DELETE_FETCHED && *path == options.spool().record()) {
+    LOG(Edge, Warning)
+        << "spool.when_full=DELETE_FETCHED deletes nothing, because spool.record names "
+           "a file: name a folder";
+  }
   if (options.exit_at_end()) {
     if (Status begun = spool->Begin(); !begun.ok()) return Err(begun);
   }
@@ -129,12 +139,13 @@ Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
   PublisherOptions publisher;
   publisher.edge_id = options.link().edge_id();
   publisher.software_version = ISOTHERM_VERSION;
+  publisher.pieces = options.link().expert().pieces();
   const bool lossless = options.link().policy() == LOSSLESS || options.source().rate() == 0.0;
   publisher.policy = lossless ? PublishPolicy::kLossless : PublishPolicy::kLive;
   return Publisher::Create(participant, clock, publisher);
 }
 
-/// A participant and what speaks through it; the first must outlive the others.
+/// Holds a participant and what speaks through it; it must outlive the others.
 struct Link {
   std::unique_ptr<Participant> participant;
   std::unique_ptr<RecordingServer> server;  ///< Null without recordings.
@@ -162,35 +173,47 @@ void ServeRecordings(const EdgeOptions& options, const ServedState& state, Link&
   link.server = std::move(*server);
 }
 
+/// Returns the publisher of a new link, which it keeps alive.
+Result<std::shared_ptr<Publisher>> MakeLink(const EdgeOptions& options,
+                                            std::unique_ptr<Participant> participant,
+                                            const Clock& clock, const ServedState& state) {
+  const auto link = std::make_shared<Link>();
+  link->participant = std::move(participant);
+  Result<std::unique_ptr<Publisher>> made = MakePublisher(options, *link->participant, clock);
+  if (!made) return Err(made.error());
+  link->publisher = std::move(*made);
+  ServeRecordings(options, state, *link);
+  return std::shared_ptr<Publisher>(link, link->publisher.get());
+}
+
 /// Without a network it captures and records all the same, unless somebody waits for the end of
-/// the source. `link` must stay where it is.
-Status Connect(const EdgeOptions& options, const TransportEnvironment& environment,
-               const Clock& clock, const ServedState& state, Link& link) {
+/// the source.
+Result<std::unique_ptr<Publisher>> Connect(const EdgeOptions& options,
+                                           const TransportEnvironment& environment,
+                                           const Clock& clock, const ServedState& state) {
   const int domain = options.link().domain();
-  Result<std::unique_ptr<Participant>> joined = Participant::Create(environment, domain);
-  if (joined) {
-    link.participant = std::move(*joined);
-    Result<std::unique_ptr<Publisher>> made = MakePublisher(options, *link.participant, clock);
-    if (!made) return made.error();
-    link.publisher = std::move(*made);
-    ServeRecordings(options, state, link);
-    return OkStatus();
-  }
-  if (options.exit_at_end() || joined.error().code() != StatusCode::kUnavailable) {
-    return joined.error();
-  }
-  link.publisher = std::make_unique<LatePublisher>(
-      [&options, &environment, &clock, &state, &link, domain](
+  const Announcement announcement{Role::kEdge, options.link().edge_id(), HostName()};
+  auto publisher = std::make_unique<RenewablePublisher>(
+      [&options, &environment, &clock, &state, domain, announcement](
           const std::stop_token& stop,
-          const LatePublisher::Waiting& waiting) -> Result<std::unique_ptr<Publisher>> {
+          const RenewablePublisher::Waiting& waiting) -> Result<std::shared_ptr<Publisher>> {
         Result<std::unique_ptr<Participant>> late =
-            JoinDomain(environment, domain, clock, stop, waiting);
+            JoinDomain(environment, domain, clock, stop, waiting, announcement);
         if (!late) return Err(late.error());
-        link.participant = std::move(*late);
-        ServeRecordings(options, state, link);
-        return MakePublisher(options, *link.participant, clock);
-      });
-  return OkStatus();
+        return MakeLink(options, std::move(*late), clock, state);
+      },
+      &NetworkAddresses, clock);
+  std::string addresses = NetworkAddresses();
+  Result<std::unique_ptr<Participant>> joined =
+      Participant::Create(environment, domain, announcement);
+  if (joined) {
+    Result<std::shared_ptr<Publisher>> link = MakeLink(options, std::move(*joined), clock, state);
+    if (!link) return Err(link.error());
+    publisher->Start(std::move(*link), std::move(addresses));
+  } else if (options.exit_at_end() || joined.error().code() != StatusCode::kUnavailable) {
+    return Err(joined.error());
+  }
+  return publisher;
 }
 
 /// Gives the files that the processes before have left an index. A file that is not completed when
@@ -221,7 +244,8 @@ std::jthread CompleteInBackground(const InterruptedScan& before, ServedState& st
 /// Opens the source and runs a scan of it. Joins the link if that has not been done.
 CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& environment,
                    const Clock& clock, const std::optional<Rig>& calibration,
-                   const std::stop_token& stop, Leaving& leaving, Process& process, Link& link) {
+                   const std::stop_token& stop, Leaving& leaving, Process& process,
+                   std::unique_ptr<Publisher>& link) {
   process.completing.request_stop();  // The scan has the disk for itself.
   FrameCounters counters;
   CameraHealth health;
@@ -239,15 +263,16 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   LogClock(options, session.clock);
   // Only a process's first scan can be one that another process has begun.
   std::optional<InterruptedScan> before;
-  if (!link.publisher) before = FindScanToResume(options, session);
+  if (!link) before = FindScanToResume(options, session);
   if (before) {
     Resume(*before, session);
     CountBefore(*before, session, counters);
   }
 
-  if (!link.publisher) {
-    const Status connected = Connect(options, environment, clock, process.state, link);
-    if (!connected.ok()) return {.status = Fail(connected)};
+  if (!link) {
+    auto connected = Connect(options, environment, clock, process.state);
+    if (!connected) return {.status = Fail(connected.error())};
+    link = std::move(*connected);
   }
   Result<std::unique_ptr<Spool>> spool = MakeSpool(options, session, before, clock, counters);
   if (!spool) {
@@ -257,10 +282,10 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
   const auto on_idle = [&before, &process] {
     if (before) process.completing = CompleteInBackground(*before, process.state);
   };
-  const Status begun = link.publisher->BeginSession(
-      DescribeRig(options, session), before ? PublishedBy(*before, session) : SessionBefore());
+  const Status begun = link->BeginSession(DescribeRig(options, session),
+                                          before ? PublishedBy(*before, session) : SessionBefore());
   if (!begun.ok()) return {.status = Fail(begun)};
-  return Capture({options, session, **source, counters, health, *link.publisher, leaving,
+  return Capture({options, session, **source, counters, health, *link, leaving,
                   process.state.is_scanning, on_idle, clock, stop},
                  std::move(*spool));
 }
@@ -281,7 +306,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   Process process;
   CaptureEnd end{.another_scan = true};
   {
-    Link link;
+    std::unique_ptr<Publisher> link;
     while (end.another_scan) {
       const CaptureEnd scan =
           RunScan(options, environment, clock, *calibration, stop, leaving, process, link);

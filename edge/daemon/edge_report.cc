@@ -32,7 +32,8 @@ constexpr double kDoubtfulClock_s = 0.05;
 
 std::uint64_t Dropped(const SensorCounters& counters) {
   return counters.rejected + counters.left_out + counters.record_queue_full +
-         counters.record_failed + counters.publish_queue_full + counters.publish_failed;
+         counters.record_failed + counters.publish_queue_full + counters.left_for_later +
+         counters.publish_failed;
 }
 
 /// At the end of a scan, when no frame may be on its way any more:
@@ -57,8 +58,8 @@ std::string StateText(const CameraReport& camera) {
 }
 
 std::string GroundText(const EdgeSituation& situation) {
-  if (!situation.ground_present) return "absent";
   if (!situation.ground_problem.empty()) return situation.ground_problem;
+  if (!situation.ground_present) return "absent";
   return situation.feedback ? FeedbackText(*situation.feedback) : "no feedback yet";
 }
 
@@ -75,7 +76,8 @@ std::string OldText(const EdgeSituation& situation) {
 /// their way.
 std::string LackingText(const EdgeStatus& status) {
   if (!HasBacklog(status)) return {};
-  return fmt::format("ground lacks {} frames", status.spool_frames);
+  return fmt::format("ground lacks {} frames{}", status.spool_frames,
+                     LeftForLater(status) > 0 ? " (link too narrow)" : "");
 }
 
 /// Says how many arrived of those that left the rig; the line above has the others. The ground's
@@ -109,6 +111,7 @@ StreamStatus ToStreamStatus(const SensorCounters& counters, double rate_hz) {
                     {"no free slot in the camera's process", counters.left_out},
                     {"lost by a restart", counters.lost_by_restart},
                     {"queue full", counters.publish_queue_full},
+                    {kLeftForLater, counters.left_for_later},
                     {"publish failed", counters.publish_failed}};
   return status;
 }
@@ -239,9 +242,13 @@ std::string Summary(const FrameCounters& counters, bool recording,
                           Equation("recorded", counts, counts.recorded, counts.record_queue_full,
                                    counts.record_failed, counts.OnTheWayToDisk()));
     }
-    text += fmt::format("{}  {}\n", name,
+    const std::string left = counts.left_for_later > 0
+                                 ? fmt::format(" + {} {}", kLeftForLater, counts.left_for_later)
+                                 : "";
+    text += fmt::format("{}  {}{}\n", name,
                         Equation("published", counts, counts.published, counts.publish_queue_full,
-                                 counts.publish_failed, counts.OnTheWayToGround()));
+                                 counts.publish_failed, counts.OnTheWayToGround()),
+                        left);
     if (counts.lost_in_camera > 0) {
       text +=
           fmt::format("{}  lost in the camera or its library {}\n", name, counts.lost_in_camera);

@@ -219,6 +219,20 @@ TEST_F(EdgeReportTest, F25WhatTheGroundLacksIsSaidOnceItIsMoreThanUsual) {
   situation.status.spool_frames = 640;
   EXPECT_THAT(StatusLine(situation), HasSubstr("ground lacks 640 frames"));
   EXPECT_THAT(Narrow(situation), HasSubstr("ground lacks 640 frames"));
+  EXPECT_THAT(StatusLine(situation), Not(HasSubstr("too narrow")));
+}
+
+TEST_F(EdgeReportTest, F28FramesThatAreLeftForLaterAreCountedAndTheReasonIsSaid) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 1000);
+  Count(Sensor::kDepth, FrameFate::kPublished, 360);
+  Count(Sensor::kDepth, FrameFate::kLeftForLater, 640);
+  EXPECT_THAT(Summary(counters_, false, std::nullopt, {}),
+              HasSubstr("captured 1000 = published 360 + rejected 0 + queue full 0 + failed 0 + "
+                        "left for later 640\n"));
+  EdgeSituation situation = Scanning();
+  situation.status.depth = ToStreamStatus(counters_.Get(Sensor::kDepth), 30.0);
+  situation.status.spool_frames = 640;
+  EXPECT_THAT(StatusLine(situation), HasSubstr("ground lacks 640 frames (link too narrow)"));
 }
 
 TEST_F(EdgeReportTest, F41HowLongTheDiskLastsIsSaidWhileAllIsWell) {

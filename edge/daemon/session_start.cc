@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <random>
 #include <string>
 
 #include "common/base/log.h"
@@ -39,6 +40,13 @@ Encoding EncodingOf(const CameraDescription& camera) {
 }
 
 }  // namespace
+
+std::uint64_t NewSession() {
+  std::random_device random;
+  std::uint64_t session = 0;
+  while (session == 0) session = std::uint64_t{random()} << 32U | random();
+  return session;
+}
 
 std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source) {
   if (!rig) return rig;

@@ -24,6 +24,10 @@ std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source
 /// Gives the rig the scale that the frames of its thermal camera have.
 void TakeScale(const RadiometricScale& scale, Rig& rig);
 
+/// Returns a number that no other scan has, of this rig or another one: by chance, since clocks of
+/// two rigs may say the same, and one that was set back repeats itself. Never 0.
+std::uint64_t NewSession();
+
 /// Holds what was found out before anything starts.
 struct EdgeSession {
   CaptureTime time;
@@ -33,11 +37,10 @@ struct EdgeSession {
   KernelClock clock{};
   std::uint64_t resumed_session = 0;  ///< It goes on from a process before; 0: a new one.
   std::array<std::uint64_t, 2> first_numbers{};  ///< The next frames', by Sensor.
+  std::uint64_t new_session = NewSession();
 
   /// One per start of a scan.
-  std::uint64_t session() const {
-    return resumed_session != 0 ? resumed_session : static_cast<std::uint64_t>(ToNanoseconds(time));
-  }
+  std::uint64_t session() const { return resumed_session != 0 ? resumed_session : new_session; }
 };
 
 /// Returns what the link says of the session.

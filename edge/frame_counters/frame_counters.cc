@@ -9,12 +9,13 @@ std::int64_t SensorCounters::OnTheWayToDisk() const {
 
 std::int64_t SensorCounters::OnTheWayToGround() const {
   return static_cast<std::int64_t>(captured - rejected - left_out - published - publish_queue_full -
-                                   publish_failed);
+                                   left_for_later - publish_failed);
 }
 
 void FrameCounters::CountPublishedAfterAll(Sensor sensor) {
   // First out of its old fate: between the two steps the frame is on the way.
-  for (const FrameFate dropped : {FrameFate::kPublishQueueFull, FrameFate::kPublishFailed}) {
+  for (const FrameFate dropped :
+       {FrameFate::kLeftForLater, FrameFate::kPublishQueueFull, FrameFate::kPublishFailed}) {
     std::atomic<std::uint64_t>& count = At(sensor, dropped);
     std::uint64_t before = count;
     while (before > 0 && !count.compare_exchange_weak(before, before - 1)) {
@@ -38,6 +39,7 @@ SensorCounters FrameCounters::Get(Sensor sensor) const {
   counters.record_failed = count(FrameFate::kRecordFailed);
   counters.published = count(FrameFate::kPublished);
   counters.publish_queue_full = count(FrameFate::kPublishQueueFull);
+  counters.left_for_later = count(FrameFate::kLeftForLater);
   counters.publish_failed = count(FrameFate::kPublishFailed);
   counters.rejected = count(FrameFate::kRejected);
   counters.left_out = count(FrameFate::kLeftOut);

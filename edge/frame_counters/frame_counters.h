@@ -23,7 +23,8 @@ enum class FrameFate : std::uint8_t {
   kRecordFailed,     ///< The disk refused it (full, broken).
   kPublished,
   kPublishQueueFull,  ///< The link was slower than the cameras.
-  kPublishFailed,     ///< The link refused it.
+  kLeftForLater,   ///< The link is slower than the cameras, and the frame not its turn (LivePace).
+  kPublishFailed,  ///< The link refused it.
   kCount
 };
 
@@ -39,6 +40,7 @@ struct SensorCounters {
   std::uint64_t record_failed = 0;
   std::uint64_t published = 0;
   std::uint64_t publish_queue_full = 0;
+  std::uint64_t left_for_later = 0;
   std::uint64_t publish_failed = 0;
 
   /// Frames that are still on their way. The counters balance when both are 0:

@@ -50,6 +50,17 @@ TEST_F(FrameCountersTest, AFrameIsOnBothWaysUntilEachHasAnEnd) {
   EXPECT_EQ(Depth().OnTheWayToGround(), 0);
 }
 
+TEST_F(FrameCountersTest, AFrameThatIsLeftForLaterIsNotOnTheWayUntilItIsSentAfterAll) {
+  counters_.Count(Sensor::kDepth, FrameFate::kCaptured);
+  counters_.Count(Sensor::kDepth, FrameFate::kLeftForLater);
+  EXPECT_EQ(Depth().OnTheWayToGround(), 0);
+  EXPECT_EQ(Depth().left_for_later, 1U);
+  counters_.CountPublishedAfterAll(Sensor::kDepth);
+  EXPECT_EQ(Depth().OnTheWayToGround(), 0);
+  EXPECT_EQ(Depth().left_for_later, 0U);
+  EXPECT_EQ(Depth().published, 1U);
+}
+
 TEST_F(FrameCountersTest, ARejectedFrameAndOneLeftOutGoNeitherWay) {
   for (const FrameFate fate : {FrameFate::kRejected, FrameFate::kLeftOut}) {
     counters_.Count(Sensor::kDepth, FrameFate::kCaptured);

@@ -56,6 +56,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       session_(parts.session),
       first_numbers_(parts.first_numbers),
       thermal_is_counts_(SendsCounts(parts.source)),
+      is_paced_(options.source().rate() > 0.0),
       step_watch_(ReadClocks(clock_)),
       depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
       thermal_timestamper_(options.timestamper(), Sensor::kThermal,
@@ -204,6 +205,9 @@ std::optional<std::string> EdgePipeline::StuckIn(SteadyTime now) const {
     return "what the ground lacks cannot be read, the disk does not answer";
   if (reading_.AtItFor(now) > kStuck) return "the source of frames does not answer";
   if (publishing_.AtItFor(now) > kLinkStuck) return "the network does not answer";
+  if (publisher_.stats().ending_for > kLinkStuck)
+    return "the network does not end, to be joined anew (MultipleReceiveThreads in its profile "
+           "must be false)";
   return std::nullopt;
 }
 
@@ -373,6 +377,11 @@ void EdgePipeline::Publish(const std::stop_token& stop) {
     const ThreadProgress::Work step(publishing_, clock_.SteadyNow());
     // First, so that the ground has them when it tracks the frame.
     PublishExternalOdometry(**frame, stop);
+    // A source that waits for the link is not too fast for it.
+    if (is_paced_ && !publisher_.TakesNext((*frame)->sensor(), publish_queue_.size())) {
+      counters_.Count((*frame)->sensor(), FrameFate::kLeftForLater);
+      continue;
+    }
     const Status published =
         std::visit([this, &stop](const auto& content) { return publisher_.Publish(content, stop); },
                    (*frame)->content);

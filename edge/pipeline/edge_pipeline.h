@@ -156,6 +156,7 @@ class EdgePipeline {
   const std::uint64_t session_;
   const std::array<std::uint64_t, 2> first_numbers_;
   const bool thermal_is_counts_;  ///< The camera measures no temperatures.
+  const bool is_paced_;           ///< Frames come in their time, whatever becomes of them.
 
   StepWatch step_watch_;  ///< Used by the capture thread only.
   std::atomic<std::uint64_t> clock_steps_{0};

@@ -82,6 +82,18 @@ TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
   }
 }
 
+TEST_F(EdgePipelineTest, F28FramesThatTheLinkHasNoRoomForAreRecordedAndLeftForLater) {
+  options_.mutable_source()->set_rate(1);  // Whose frames come in their time.
+  publisher_.leaves_all_of = Sensor::kThermal;
+  Start("20*d 30*t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  ExpectBalancedCounters();
+  EXPECT_EQ(recording_.thermal_frames.size(), 30U);
+  EXPECT_EQ(publisher_.depth().size(), 20U);
+  EXPECT_TRUE(publisher_.thermal().empty());
+  EXPECT_EQ(counters_.Get(Sensor::kThermal).left_for_later, 30U);
+}
+
 TEST_F(EdgePipelineTest, F39ACameraThatIsStuckCostsTheRecordingNothing) {
   Start("3*d 2*t %");
   while (!camera_->hangs()) std::this_thread::yield();

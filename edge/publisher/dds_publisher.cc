@@ -16,6 +16,12 @@ using namespace std::chrono_literals;
 
 constexpr Nanoseconds kPresenceInterval = 100ms;  ///< To look whether the ground is there.
 
+Sensor SensorOf(const EncodedDepthFrame&) { return Sensor::kDepth; }
+Sensor SensorOf(const EncodedThermalFrame&) { return Sensor::kThermal; }
+
+/// A frame that got lost more often than parity explains is sent reliably, however long it takes.
+constexpr int kTriesInPieces = 3;
+
 Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
 
 }  // namespace
@@ -31,6 +37,9 @@ void DdsPublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) 
     ends_.wait_set.Wait(kPresenceInterval);
     ends_.peers.Take([&](Received<Hello>&& peer) { OnPeer(peer); });
     TakeReceipts();
+    ends_.piece_reports.Take([&](Received<PieceReport>&& report) {
+      if (IsOurs(report.edge_id)) OnPieceReport(report);
+    });
     ends_.feedback.Take([&](Received<Feedback>&& feedback) {
       if (IsOurs(feedback.edge_id)) OnFeedback(feedback, handlers);
     });
@@ -50,12 +59,11 @@ void DdsPublisher::TakeReceipts() {
 void DdsPublisher::OnPeer(const Received<Hello>& peer) {
   if (peer.message.role != Role::kGround) return;
   const Status compatible = CheckCompatible(own_hello_, peer.message);
-  if (!compatible.ok()) {
-    refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
-    return;
-  }
+  if (!compatible.ok()) refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
+  const PeerHandle process = ends_.peers.PeerOf(peer.writer);
   MutexLock lock(mutex_);
-  grounds_.Add(peer.writer, ends_.peers.PeerOf(peer.writer));
+  if (!compatible.ok()) return grounds_.AddStranger(process);
+  grounds_.Add(peer.writer, process);
 }
 
 void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
@@ -87,6 +95,8 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
     receipt_at_ = now;
     depth_.OnReceipt(receipt.depth, now);
     thermal_.OnReceipt(receipt.thermal, now);
+    pace_.OnReceipt(receipt, now);
+    arrival_.OnReceipt(sender, receipt, now);
   }
   changed_.notify_all();
 }
@@ -94,6 +104,17 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
 std::optional<RefusalCause> DdsPublisher::RefusalOf(const Receipt& receipt) const {
   if (const auto cause = depth_.sent().Check(receipt.depth)) return cause;
   return thermal_.sent().Check(receipt.thermal);
+}
+
+void DdsPublisher::OnPieceReport(const Received<PieceReport>& received) {
+  const PeerHandle sender = ends_.piece_reports.PeerOf(received.writer);
+  {
+    MutexLock lock(mutex_);
+    if (!grounds_.Knows(sender) || received.message.session != session_) return;
+  }
+  if (const auto cause = pieces_.OnReport(sender, received.message)) {
+    refusals_.Add(*cause, TopicName(TopicId::kPieceReport));
+  }
 }
 
 void DdsPublisher::OnFeedback(const Received<Feedback>& received,
@@ -122,14 +143,32 @@ std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
 }
 
 void DdsPublisher::LookForGround() {
+  const SteadyTime now = clock_.SteadyNow();
+  if (now >= ways_due_) LookAtWays(now);
   MutexLock lock(mutex_);
   // After one ground has left, the next may have another version, and other readers.
-  const bool left = grounds_.Look(clock_.SteadyNow(), [this](std::uint64_t hello_writer) {
-    return ends_.peers.PeerOf(hello_writer) != 0;
-  });
+  const bool left = grounds_.Look(
+      now, [this](std::uint64_t hello_writer) { return ends_.peers.PeerOf(hello_writer) != 0; });
   if (!left) return;
   depth_.ForgetReaders();
   thermal_.ForgetReaders();
+}
+
+void DdsPublisher::LookAtWays(SteadyTime now) {
+  ways_due_ = now + kPresenceInterval;
+  const std::map<PeerHandle, Announcement> announced = ends_.announced.Of(Role::kGround);
+  MutexLock lock(mutex_);
+  const bool sent_pieces = SendsPieces();
+  reads_pieces_ =
+      grounds_.HasFollower([this](PeerHandle peer) { return ends_.pieces.Reaches(peer); });
+  if (SendsPieces() && !sent_pieces) {
+    LOG(Publisher, Info) << "frames go in pieces, with parity";
+  }
+  const bool waits = policy_ == PublishPolicy::kLossless &&
+                     !(depth_.window().HasRoom() && thermal_.window().HasRoom());
+  arrival_.Look({depth_.counts().next_frame_number, thermal_.counts().next_frame_number}, waits,
+                now);
+  grounds_.LookAtWays(now, announced, arrival_.unheard_by());
 }
 
 bool DdsPublisher::IsGroundReady() const {
@@ -154,6 +193,9 @@ Status DdsPublisher::BeginSession(const RigDescription& rig, const SessionBefore
     session_ = rig.session;
     depth_.BeginSession(before.depth);
     thermal_.BeginSession(before.thermal);
+    pace_.BeginSession();
+    pieces_.BeginSession();
+    arrival_.BeginSession();
     flow_waits_ = flow_timeouts_ = 0;
     receipt_at_.reset();
   }
@@ -165,13 +207,25 @@ Status DdsPublisher::Announce(const RigDescription& rig) {
   return ends_.rig.Write(options_.edge_id, rig);
 }
 
+bool DdsPublisher::TakesNext(Sensor sensor, std::size_t newer) {
+  if (policy_ != PublishPolicy::kLive) return true;
+  if (SendsPieces()) return pieces_.TakesNext(sensor, newer);
+  // The middleware would keep the newest for who comes, and send them all at once over a radio.
+  if (options_.pieces && ends_.depth.matched_readers() + ends_.thermal.matched_readers() == 0) {
+    return false;
+  }
+  MutexLock lock(mutex_);
+  return pace_.TakesNext(sensor, clock_.SteadyNow());
+}
+
 template <typename Frame>
 void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stream,
                                const std::stop_token& stop) {
   MutexLock lock(mutex_);
   bool waited = false;
   // An onlooker that sends no receipts must not stop the scan.
-  while (!stream->window().HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
+  while (policy_ == PublishPolicy::kLossless && !stream->window().HasRoom() &&
+         MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested() && !stop_budget_.MayWait(now)) break;
     // Opens the window until the next receipt: a ground that is gone costs its timeout once.
@@ -184,6 +238,10 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stre
     changed_.wait_for(lock, kPollInterval);
   }
   if (waited) ++flow_waits_;
+}
+
+bool DdsPublisher::SendsPieces() const {
+  return policy_ == PublishPolicy::kLive && options_.pieces && reads_pieces_;
 }
 
 template <typename Frame>
@@ -204,13 +262,16 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Out
     MutexLock lock(mutex_);
     stream->sent().Note(number, frame.header.capture_time);
   }
-  const Status written = writer->Write(options_.edge_id, frame);
+  const bool in_pieces = SendsPieces();
+  const Status written = in_pieces ? pieces_.Send(frame, PiecePriority::kLive, stop)
+                                   : writer->Write(options_.edge_id, frame);
   MutexLock lock(mutex_);
   if (!written.ok()) {
     stream->OnFailed();
     return written;
   }
   stream->OnPublished(number);
+  if (!in_pieces) pace_.OnSent(SensorOf(frame), number, clock_.SteadyNow());
   return OkStatus();
 }
 
@@ -220,8 +281,9 @@ Status DdsPublisher::Publish(const ExternalOdometrySample& sample, std::stop_tok
 }
 
 template <typename Frame>
-Result<bool> DdsPublisher::BackfillFrame(const Frame& frame, Writer<Backfilled<Frame>>* writer,
-                                         OutgoingStream* stream) {
+Result<bool> DdsPublisher::BackfillFrame(const Frame& frame, int tries,
+                                         Writer<Backfilled<Frame>>* writer, OutgoingStream* stream,
+                                         const std::stop_token& stop) {
   {
     MutexLock lock(mutex_);
     if (session_ != frame.header.session) {
@@ -230,9 +292,10 @@ Result<bool> DdsPublisher::BackfillFrame(const Frame& frame, Writer<Backfilled<F
     }
     stream->sent().NoteAgain(frame.header.frame_number);
   }
-  if (Status written = writer->Write(options_.edge_id, Backfilled<Frame>{frame}); !written.ok()) {
-    return Err(std::move(written));
-  }
+  Status written = SendsPieces() && tries < kTriesInPieces
+                       ? pieces_.Send(frame, PiecePriority::kBackfill, stop)
+                       : writer->Write(options_.edge_id, Backfilled<Frame>{frame});
+  if (!written.ok()) return Err(std::move(written));
   MutexLock lock(mutex_);
   return stream->OnBackfilled(frame.header.frame_number);
 }
@@ -299,6 +362,8 @@ PublisherStats DdsPublisher::stats() const {
       .takes_backfill = grounds_.HasFollower([this](PeerHandle peer) {
         return ends_.backfill_depth.Reaches(peer) && ends_.backfill_thermal.Reaches(peer);
       }),
+      .leaves_frames = policy_ == PublishPolicy::kLive &&
+                       (SendsPieces() ? pieces_.leaves_frames() : pace_.leaves_frames()),
       .ground_problem = grounds_.Problem(now)};
 }
 

@@ -14,9 +14,12 @@
 #include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
 #include "common/time/clock.h"
+#include "edge/publisher/arrival_watch.h"
 #include "edge/publisher/edge_endpoints.h"
 #include "edge/publisher/ground_watch.h"
+#include "edge/publisher/live_pace.h"
 #include "edge/publisher/outgoing_stream.h"
+#include "edge/publisher/piece_sender.h"
 #include "edge/publisher/publisher.h"
 #include "edge/publisher/stop_budget.h"
 
@@ -41,17 +44,20 @@ class DdsPublisher final : public Publisher {
   bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
   Status BeginSession(const RigDescription& rig, const SessionBefore& before) override;
   Status Announce(const RigDescription& rig) override;
+  bool TakesNext(Sensor sensor, std::size_t newer) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.depth, &depth_, stop);
   }
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.thermal, &thermal_, stop);
   }
-  Result<bool> Backfill(const EncodedDepthFrame& frame) override {
-    return BackfillFrame(frame, &ends_.backfill_depth, &depth_);
+  Result<bool> Backfill(const EncodedDepthFrame& frame, int tries,
+                        const std::stop_token& stop) override {
+    return BackfillFrame(frame, tries, &ends_.backfill_depth, &depth_, stop);
   }
-  Result<bool> Backfill(const EncodedThermalFrame& frame) override {
-    return BackfillFrame(frame, &ends_.backfill_thermal, &thermal_);
+  Result<bool> Backfill(const EncodedThermalFrame& frame, int tries,
+                        const std::stop_token& stop) override {
+    return BackfillFrame(frame, tries, &ends_.backfill_thermal, &thermal_, stop);
   }
   Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) override;
   Status Publish(EdgeStatus status) override;
@@ -62,6 +68,10 @@ class DdsPublisher final : public Publisher {
   void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
   PublisherStats stats() const override;
   std::optional<Receipt> receipt() const override { return receipt_.Get(); }
+  SessionBefore so_far() const override {
+    MutexLock lock(mutex_);
+    return {.depth = depth_.so_far(), .thermal = thermal_.so_far()};
+  }
 
  private:
   static OutgoingStream MakeStream(const PublisherOptions& options) {
@@ -71,9 +81,12 @@ class DdsPublisher final : public Publisher {
   template <typename Frame>
   Status PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
                       const std::stop_token& stop);
+  /// Returns whether frames go in pieces: nothing of these is sent again, and a ground is there
+  /// that reads them.
+  bool SendsPieces() const;
   template <typename Frame>
-  Result<bool> BackfillFrame(const Frame& frame, Writer<Backfilled<Frame>>* writer,
-                             OutgoingStream* stream);
+  Result<bool> BackfillFrame(const Frame& frame, int tries, Writer<Backfilled<Frame>>* writer,
+                             OutgoingStream* stream, const std::stop_token& stop);
   template <typename Frame>
   void WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stream,
                    const std::stop_token& stop);
@@ -86,9 +99,11 @@ class DdsPublisher final : public Publisher {
   bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
   void TakeReceipts();
   void OnReceipt(const Received<Receipt>& received) REQUIRES(receipts_mutex_);
+  void OnPieceReport(const Received<PieceReport>& received);
   void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
+  void LookAtWays(SteadyTime now);
   /// Says why the ground's word about this session cannot be true.
   std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
   std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
@@ -120,20 +135,25 @@ class DdsPublisher final : public Publisher {
   const Hello own_hello_;
   RefusalCounter refusals_;
   EdgeEndpoints ends_;
+  PieceSender pieces_{clock_, options_.edge_id, ends_.pieces};
   // Run() takes receipts, and so does Drain(), before or after Run().
   Mutex receipts_mutex_;
   LatestValue<Receipt> receipt_;
   std::atomic<PublishPolicy> policy_;
+  std::atomic<bool> reads_pieces_{false};  // The ground that follows this rig.
+  SteadyTime ways_due_{};                  // Of the thread in Run().
 
   mutable Mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<std::uint64_t> session_ GUARDED_BY(mutex_);
+  LivePace pace_ GUARDED_BY(mutex_);
+  ArrivalWatch arrival_ GUARDED_BY(mutex_);
   OutgoingStream depth_ GUARDED_BY(mutex_);
   OutgoingStream thermal_ GUARDED_BY(mutex_);
   std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
   std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
   std::optional<SteadyTime> receipt_at_ GUARDED_BY(mutex_);  // The newest of the session.
-  std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);   // Not sent yet.
+  std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);   // Of the newest receipt.
   GroundWatch grounds_ GUARDED_BY(mutex_);
   StopBudget stop_budget_ GUARDED_BY(mutex_);
 };

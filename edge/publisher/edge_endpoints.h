@@ -2,7 +2,9 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
+#include "common/messages/frame_piece.h"
 #include "common/messages/messages.h"
+#include "common/transport/announced_peers.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/participant.h"
 #include "common/transport/refusal.h"
@@ -17,6 +19,7 @@ struct EdgeEndpoints {
 
   Writer<EncodedDepthFrame> depth;
   Writer<EncodedThermalFrame> thermal;
+  Writer<FramePiece> pieces;
   Writer<Backfilled<EncodedDepthFrame>> backfill_depth;
   Writer<Backfilled<EncodedThermalFrame>> backfill_thermal;
   Writer<ExternalOdometrySample> external_odometry;
@@ -26,8 +29,10 @@ struct EdgeEndpoints {
   Writer<Hello> hello;
   Reader<Command> commands;
   Reader<Receipt> receipts;
+  Reader<PieceReport> piece_reports;
   Reader<Feedback> feedback;
   Reader<Hello> peers;
+  AnnouncedPeers announced;
   WaitSet wait_set;
 };
 

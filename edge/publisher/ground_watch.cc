@@ -1,5 +1,7 @@
 #include "edge/publisher/ground_watch.h"
 
+#include <fmt/format.h>
+
 #include "common/base/log.h"
 
 namespace isotherm {
@@ -29,6 +31,31 @@ bool GroundWatch::Look(SteadyTime now,
   is_present_ = present;
   LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
   return left;
+}
+
+void GroundWatch::LookAtWays(SteadyTime now, const std::map<PeerHandle, Announcement>& announced,
+                             PeerHandle unheard_by) {
+  const std::optional<Announcement> silent =
+      ways_.Look(now, announced, [this](PeerHandle peer) { return Knows(peer); });
+  std::string problem;
+  // What it got when it was still there says nothing of a ground that has left.
+  if (announced.contains(unheard_by)) {
+    problem =
+        "is heard, and nothing that this rig sends arrives there: packets pass in one "
+        "direction only (radio, a firewall)";
+  } else if (silent) {
+    problem = fmt::format(
+        "on \"{}\" announces itself, and nothing else of it arrives: packets pass in one direction "
+        "only (radio, a firewall)",
+        silent->host);
+  }
+  if (problem == one_way_) return;
+  one_way_ = problem;
+  if (problem.empty()) {
+    LOG(Publisher, Info) << "packets to and from the ground station pass again, or it has left";
+  } else {
+    LOG(Publisher, Warning) << "the ground station " << problem;
+  }
 }
 
 void GroundWatch::LogRelation(SteadyTime now) {

@@ -2,13 +2,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "common/messages/messages.h"
 #include "common/time/time_types.h"
+#include "common/transport/announcement.h"
 #include "common/transport/endpoints.h"
+#include "common/transport/one_way_watch.h"
 #include "edge/publisher/ground_register.h"
 #include "edge/publisher/ground_relation.h"
 
@@ -40,9 +43,18 @@ class GroundWatch {
     return !relation_.IsRefused(now) && grounds_.MayHaveFollower(reads);
   }
   bool IsRefused(SteadyTime now) const { return relation_.IsRefused(now); }
+  /// Tells what is heard of grounds and by them, several times a second: `announced` are those that
+  /// announce themselves, `unheard_by` is the one at which nothing arrives that this rig sends.
+  void LookAtWays(SteadyTime now, const std::map<PeerHandle, Announcement>& announced,
+                  PeerHandle unheard_by);
+  /// A process has said that it is a ground station of another version.
+  void AddStranger(PeerHandle peer) { ways_.OnHeard(peer); }
   bool is_present() const { return is_present_; }
-  /// As GroundRelation::Problem().
-  std::string Problem(SteadyTime now) const { return relation_.Problem(now); }
+  /// As GroundRelation::Problem(), or says that packets pass in one direction only.
+  std::string Problem(SteadyTime now) const {
+    const std::string problem = relation_.Problem(now);
+    return problem.empty() ? one_way_ : problem;
+  }
 
  private:
   void LogRelation(SteadyTime now);
@@ -50,6 +62,8 @@ class GroundWatch {
   const std::string edge_id_;
   GroundRegister grounds_;
   GroundRelation relation_;
+  OneWayWatch ways_;
+  std::string one_way_;  ///< Empty: packets pass in both directions, or in none.
   bool is_present_ = false;
 };
 

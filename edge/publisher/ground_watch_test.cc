@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace isotherm {
 namespace {
 
@@ -104,6 +106,25 @@ TEST_F(GroundWatchTest, AGroundIsThereFromTheNextLookUntilItsHellosEnd) {
   EXPECT_FALSE(watch_.is_present());
   EXPECT_FALSE(watch_.Knows(kGround));
   EXPECT_FALSE(Look(false)) << "told once";
+}
+
+TEST_F(GroundWatchTest, F29WhichDirectionIsDeadIsSaid) {
+  const std::map<PeerHandle, Announcement> announced = {{kGround, {Role::kGround, "", "desk"}}};
+  const auto look = [&](Nanoseconds duration, PeerHandle unheard_by) {
+    for (const SteadyTime end = now_ + duration; now_ < end; now_ += 100ms)
+      watch_.LookAtWays(now_, announced, unheard_by);
+  };
+  look(4s, 0);
+  EXPECT_THAT(watch_.Problem(now_), IsEmpty());
+  look(2s, 0);
+  EXPECT_THAT(watch_.Problem(now_), HasSubstr("on \"desk\" announces itself"));
+  watch_.Add(kHello, kGround);
+  look(1s, 0);
+  EXPECT_THAT(watch_.Problem(now_), IsEmpty());
+  look(1s, kGround);
+  EXPECT_THAT(watch_.Problem(now_), HasSubstr("nothing that this rig sends arrives"));
+  watch_.LookAtWays(now_, {}, kGround);
+  EXPECT_THAT(watch_.Problem(now_), IsEmpty()) << "it is switched off";
 }
 
 }  // namespace

@@ -20,13 +20,21 @@ class OutgoingStream {
       : window_(flow_window_frames, flow_timeout) {}
 
   void BeginSession(const PublishedBefore& before) {
-    counts_ = {.published = before.frames, .next_frame_number = before.next_frame_number};
+    counts_ = {.published = before.frames,
+               .next_frame_number = std::max(before.next_frame_number, before.numbers.next())};
     published_before_ = before.next_frame_number;
     number_limit_ = before.number_limit;
-    counted_before_ = before.frames;
-    published_ = FrameNumberSet(kMaxGaps);
+    counted_before_ = before.frames - before.by_this_process;
+    published_ = before.numbers;
     window_.BeginSession();
-    sent_.BeginSession(before.number_limit);
+    sent_.BeginSession(std::max(before.number_limit, before.numbers.next()));
+  }
+  PublishedBefore so_far() const {
+    return {.frames = counts_.published,
+            .next_frame_number = published_before_,
+            .number_limit = number_limit_,
+            .numbers = published_,
+            .by_this_process = counts_.published - counted_before_};
   }
   /// Enters that a frame was written. It must have been entered into sent() before the write.
   void OnPublished(std::uint64_t number) {
@@ -77,15 +85,12 @@ class OutgoingStream {
   /// A ground that has just come may read before its hello is here.
   static constexpr Nanoseconds kHelloGrace = std::chrono::milliseconds(500);
 
-  /// Gaps that are remembered; frames of those before count as published.
-  static constexpr std::size_t kMaxGaps = 4096;
-
   StreamPublished counts_;
   // Of the processes before that had the same session.
   std::uint64_t published_before_ = 0;  ///< Numbers below count as published.
   std::uint64_t number_limit_ = 0;      ///< All their numbers are below.
   std::uint64_t counted_before_ = 0;    ///< Their part of counts_.published.
-  FrameNumberSet published_{kMaxGaps};
+  FrameNumberSet published_;
   FlowWindow window_;
   PublishedStream sent_;
   int readers_ = 0;              ///< When last looked at.

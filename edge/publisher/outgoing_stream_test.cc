@@ -117,5 +117,23 @@ TEST_F(OutgoingStreamTest, TheSuccessorOfAGroundThatLeftIsNewAlthoughTheNumberOf
   EXPECT_TRUE(stream_.HasNewReader(1, now_ + 3s));
 }
 
+TEST_F(OutgoingStreamTest, F30ALinkThatIsMadeAnewKnowsEachFrameThatWasPublished) {
+  stream_.BeginSession({.frames = 10, .next_frame_number = 10, .number_limit = 20});
+  for (const std::uint64_t number : {20, 21, 24}) Publish(number);  // Two were left for later.
+  const PublishedBefore so_far = stream_.so_far();
+  OutgoingStream anew{2, 10s};
+  anew.BeginSession(so_far);
+  EXPECT_EQ(anew.counts().published, 13U);
+  EXPECT_EQ(anew.counts().next_frame_number, 25U);
+  EXPECT_EQ(anew.sent().Check(StreamReceipt{.next = 25, .received = 13}), std::nullopt);
+  anew.sent().NoteAgain(22);
+  EXPECT_TRUE(anew.OnBackfilled(22)) << "it had been left";
+  EXPECT_FALSE(anew.OnBackfilled(24)) << "it had been published";
+  EXPECT_FALSE(anew.OnBackfilled(9)) << "by the process before";
+  // The ground has one of the process before that nobody recorded, and all of this one.
+  anew.OnReceipt({.next = 25, .handled = 25, .received = 15, .holes = {{10, 18}, {23, 23}}}, now_);
+  EXPECT_EQ(anew.counts().published, 15U);
+}
+
 }  // namespace
 }  // namespace isotherm

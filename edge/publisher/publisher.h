@@ -9,6 +9,7 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
+#include "common/messages/frame_number_set.h"
 #include "common/messages/messages.h"
 #include "common/time/clock.h"
 #include "common/transport/participant.h"
@@ -30,11 +31,15 @@ struct StreamPublished {
   std::uint64_t next_frame_number = 0;  ///< One above the highest published.
 };
 
-/// Counts what a process before has published of a stream of a session that goes on.
+/// Tells what of a stream of a session that goes on was published before: by other processes, and
+/// by a link of this one that was made anew.
 struct PublishedBefore {
   std::uint64_t frames = 0;             ///< They can be sent again.
-  std::uint64_t next_frame_number = 0;  ///< One above the highest of them.
-  std::uint64_t number_limit = 0;       ///< No number that it may have published is as high.
+  std::uint64_t next_frame_number = 0;  ///< One above the highest of other processes.
+  std::uint64_t number_limit =
+      0;                     ///< No number that another process may have published is as high.
+  FrameNumberSet numbers{};  ///< Published by this process.
+  std::uint64_t by_this_process = 0;  ///< So many of `frames` are its own.
 };
 
 /// The same for both streams; nothing for a session that begins.
@@ -54,8 +59,10 @@ struct PublisherStats {
   /// Since the newest receipt of this session; nullopt: none came.
   std::optional<Nanoseconds> receipt_age{};
   bool takes_backfill = false;   ///< A ground that follows this rig reads what Backfill sends.
+  bool leaves_frames = false;    ///< The link is too narrow for all of them: TakesNext.
+  Nanoseconds ending_for{};      ///< For so long a link that is made anew does not end.
   std::string problem{};         ///< Why there is no network at all; empty if there is one.
-  std::string ground_problem{};  ///< GroundRelation::Problem.
+  std::string ground_problem{};  ///< GroundWatch::Problem.
 };
 
 /// The edge's end of the link. Publish() and Drain() belong to the publish thread, Run() to the
@@ -82,15 +89,22 @@ class Publisher {
   virtual Status BeginSession(const RigDescription& rig, const SessionBefore& before) = 0;
   /// Announces the rig of the running session again, after more has become known of it.
   virtual Status Announce(const RigDescription& rig) = 0;
+  /// Says of the next frame of a stream whether it is to be published, or, with kLive, left for
+  /// later, because the link is too narrow for all (LivePace, PiecePace); so many newer frames wait
+  /// behind it.
+  virtual bool TakesNext(Sensor sensor, std::size_t newer) = 0;
   /// Writes a frame. With kLossless it first waits for room in the flow window. Once stop is
   /// requested, all frames that follow have the time of one StopBudget. An error: the frame was not
   /// sent and is counted.
   virtual Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) = 0;
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
-  /// Sends a frame from the recording, which the ground lacks. Returns whether it had never been
-  /// published before: it then counts as published. Waits for no window.
-  virtual Result<bool> Backfill(const EncodedDepthFrame& frame) = 0;
-  virtual Result<bool> Backfill(const EncodedThermalFrame& frame) = 0;
+  /// Sends a frame from the recording, which the ground lacks, reliably if it got lost `tries`
+  /// times. Returns whether it had never been published before: it then counts as published. Waits
+  /// for no window, but with kLive for what is live, and for the link.
+  virtual Result<bool> Backfill(const EncodedDepthFrame& frame, int tries,
+                                const std::stop_token& stop) = 0;
+  virtual Result<bool> Backfill(const EncodedThermalFrame& frame, int tries,
+                                const std::stop_token& stop) = 0;
   /// Never waits for the ground: a pose that comes late is worth little. Once stop is requested, it
   /// has its part of the time that frames have.
   virtual Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) = 0;
@@ -108,6 +122,8 @@ class Publisher {
   virtual PublisherStats stats() const = 0;
   /// Newest receipt of this session.
   virtual std::optional<Receipt> receipt() const = 0;
+  /// Returns what a link that goes on with the session has to know of this one.
+  virtual SessionBefore so_far() const = 0;
 };
 
 }  // namespace isotherm

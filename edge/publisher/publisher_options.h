@@ -13,6 +13,8 @@ struct PublisherOptions {
   std::string edge_id = "edge";  ///< Key of everything this rig writes; 1..32 bytes.
   std::string software_version;  ///< Goes into the hello.
   PublishPolicy policy = PublishPolicy::kLive;
+  /// With kLive: frames go in pieces, if the ground that follows this rig reads them.
+  bool pieces = true;
   /// With kLossless: frames of one stream that may be under way beyond what the ground has handled.
   /// Larger: faster replay, more memory on both sides. 1..kMaxFlowWindowFrames (qos.h), so that no
   /// history overflows.

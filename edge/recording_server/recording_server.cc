@@ -57,7 +57,8 @@ void RecordingServer::Run(const std::stop_token& stop) {
 
 void RecordingServer::Serve(const RecordingRequest& request, const std::stop_token& stop) {
   if (stop.stop_requested()) return;
-  const bool is_read = request.kind != RecordingRequestKind::kList;
+  const bool is_read = request.kind == RecordingRequestKind::kRead ||
+                       request.kind == RecordingRequestKind::kChecksum;
   RecordingPiece piece{.asker = request.asker,
                        .number = request.number,
                        .outcome = RecordingOutcome::kBusy,

@@ -6,9 +6,11 @@
 #include <system_error>
 #include <utility>
 
+#include "common/base/log.h"
 #include "common/recording/byte_stream.h"
 #include "common/recording/mcap_records.h"
 #include "common/recording/recording_parts.h"
+#include "edge/spool/older_recordings.h"
 
 namespace isotherm {
 namespace {
@@ -32,10 +34,17 @@ RecordingPiece RecordingShelf::Answer(const RecordingRequest& request) {
                        .number = request.number,
                        .recording = request.recording,
                        .offset = request.offset};
-  if (request.kind == RecordingRequestKind::kList) {
-    List(request, piece);
-  } else {
-    Read(request, piece);
+  switch (request.kind) {
+    case RecordingRequestKind::kList:
+      List(request, piece);
+      break;
+    case RecordingRequestKind::kRead:
+    case RecordingRequestKind::kChecksum:
+      Read(request, piece);
+      break;
+    case RecordingRequestKind::kKept:
+      NoteKept(request, piece);
+      break;
   }
   return piece;
 }
@@ -62,7 +71,7 @@ const ListedRecording* RecordingShelf::Find(const std::string& name) const {
   return found == listed_.end() ? nullptr : &*found;
 }
 
-void RecordingShelf::Read(const RecordingRequest& request, RecordingPiece& piece) {
+const ListedRecording* RecordingShelf::Get(const RecordingRequest& request, RecordingPiece& piece) {
   const ListedRecording* recording = Find(request.recording);
   if (recording == nullptr && !looked_at_) {
     Look();  // Who asks knows the name from before this process.
@@ -70,10 +79,25 @@ void RecordingShelf::Read(const RecordingRequest& request, RecordingPiece& piece
   }
   if (recording == nullptr) {
     piece.outcome = RecordingOutcome::kNotThere;
-    return;
+    return nullptr;
   }
   Describe(*recording, piece);
-  if (piece.outcome != RecordingOutcome::kDone) return;
+  return piece.outcome == RecordingOutcome::kDone ? recording : nullptr;
+}
+
+void RecordingShelf::NoteKept(const RecordingRequest& request, RecordingPiece& piece) {
+  const ListedRecording* recording = Get(request, piece);
+  if (recording == nullptr || IsFetched(recording->path)) return;
+  const Status marked = MarkFetched(recording->path, request.offset);
+  if (marked.ok()) return;
+  LOG(Recordings, Warning) << recording->path.filename().string()
+                           << " was fetched, and cannot be marked so: " << marked.message();
+  piece.outcome = RecordingOutcome::kUnreadable;
+}
+
+void RecordingShelf::Read(const RecordingRequest& request, RecordingPiece& piece) {
+  const ListedRecording* recording = Get(request, piece);
+  if (recording == nullptr) return;
   piece.outcome = RecordingOutcome::kUnreadable;
   const Result<std::unique_ptr<ByteSource>> source = OpenFileSource(recording->path);
   if (!source || request.offset > (*source)->size() ||

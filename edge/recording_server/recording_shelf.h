@@ -24,6 +24,10 @@ class RecordingShelf {
   const ListedRecording* Find(const std::string& name) const;
   void List(const RecordingRequest& request, RecordingPiece& piece);
   void Read(const RecordingRequest& request, RecordingPiece& piece);
+  void NoteKept(const RecordingRequest& request, RecordingPiece& piece);
+  /// Returns the one that is asked for, and describes it; nullptr if there is none, or it cannot be
+  /// read now, as the answer says.
+  const ListedRecording* Get(const RecordingRequest& request, RecordingPiece& piece);
 
   const std::filesystem::path record_;
   std::vector<ListedRecording> listed_;  ///< As of the newest look.

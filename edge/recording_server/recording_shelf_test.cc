@@ -8,6 +8,7 @@
 
 #include "common/recording/byte_stream.h"
 #include "common/testing/temporary_directory.h"
+#include "edge/spool/older_recordings.h"
 
 namespace isotherm {
 namespace {
@@ -111,6 +112,21 @@ TEST_F(RecordingShelfTest, ARecordingWithANameOfItsOwnIsThereWithItsParts) {
   }
   EXPECT_EQ(entries, 2U);
   EXPECT_EQ(bytes, 3U);
+}
+
+TEST_F(RecordingShelfTest, WhoHasTheWholeRecordingIsBelieved) {
+  Put(name_, "123456789");
+  const auto kept = [this](const std::string& name, std::uint64_t size) {
+    return Ask(RecordingRequestKind::kKept, name, size, 0).outcome;
+  };
+  EXPECT_EQ(kept(name_, 8), RecordingOutcome::kUnreadable) << "it has nine bytes";
+  EXPECT_FALSE(IsFetched(folder_.path() / name_));
+  EXPECT_EQ(kept("../" + name_, 9), RecordingOutcome::kNotThere);
+  EXPECT_EQ(kept(name_, 9), RecordingOutcome::kDone);
+  EXPECT_TRUE(IsFetched(folder_.path() / name_));
+  EXPECT_EQ(kept(name_, 9), RecordingOutcome::kDone);
+  EXPECT_EQ(Ask(RecordingRequestKind::kList, "", 1, 0).outcome, RecordingOutcome::kNotThere)
+      << "the note is no recording";
 }
 
 }  // namespace

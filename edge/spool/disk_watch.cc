@@ -10,6 +10,7 @@ namespace {
 
 // Shorter, and one chunk more or less would count.
 constexpr Nanoseconds kMeasuring = std::chrono::seconds(5);
+constexpr double kQuotaMargin_s = 10.0;
 
 }  // namespace
 
@@ -28,20 +29,26 @@ void DiskWatch::Measure(SteadyTime now, std::uint64_t recorded_bytes) {
   mark_ = {now, recorded_bytes};
 }
 
-DiskLevel DiskWatch::Update(SteadyTime now, std::uint64_t free_bytes,
-                            std::uint64_t recorded_bytes) {
+DiskLevel DiskWatch::Update(SteadyTime now, const DiskSpace& space, std::uint64_t recorded_bytes,
+                            bool is_ended) {
   Measure(now, recorded_bytes);
-  if (bytes_per_s_ <= 0.0) return level_;
-  reserve_bytes_ = std::min(max_reserve_bytes_, reserve_s_ * bytes_per_s_);
-  const double usable = static_cast<double>(free_bytes) - reserve_bytes_;
-  left_s_ = std::max(usable, 0.0) / bytes_per_s_;
-  const bool stays = level_ == DiskLevel::kReserve && usable < reserve_bytes_;
-  if (usable <= 0.0 || stays) {
-    level_ = DiskLevel::kReserve;
-  } else {
-    level_ = left_s_ < warn_s_ ? DiskLevel::kLow : DiskLevel::kEnough;
+  if (bytes_per_s_ <= 0.0) {
+    // A quota that is used up is so at any rate.
+    is_quota_first_ = space.quota_bytes == 0;
+    return is_quota_first_ ? DiskLevel::kReserve : DiskLevel::kEnough;
   }
-  return level_;
+  reserve_bytes_ = std::min(max_reserve_bytes_, reserve_s_ * bytes_per_s_);
+  const double of_disk = static_cast<double>(space.free_bytes) - reserve_bytes_;
+  const auto of_quota = static_cast<double>(space.quota_bytes);
+  is_quota_first_ = of_quota < of_disk;
+  const double usable = std::min(of_disk, of_quota);
+  left_s_ = (std::max(usable, 0.0) + static_cast<double>(space.deletable_bytes)) / bytes_per_s_;
+  const double needed =
+      !is_ended ? 0.0
+                : (is_quota_first_ ? std::min(reserve_bytes_, kQuotaMargin_s * bytes_per_s_)
+                                   : reserve_bytes_);
+  if (usable <= 0.0 || usable < needed) return DiskLevel::kReserve;
+  return left_s_ < warn_s_ ? DiskLevel::kLow : DiskLevel::kEnough;
 }
 
 }  // namespace isotherm

@@ -9,7 +9,7 @@
 namespace isotherm {
 namespace {
 
-/// Sessions that lie close together get names that do not (Knuth's multiplicative hash).
+/// Returns what tells sessions apart in names (Knuth's multiplicative hash).
 std::uint32_t ShortName(std::uint64_t session) {
   return static_cast<std::uint32_t>((session * 0x9E3779B97F4A7C15U) >> 32U);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/base/log.h"
@@ -13,6 +14,7 @@
 #include "common/recording/recording_parts.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/spool/interrupted_scan.h"
+#include "edge/spool/older_recordings.h"
 
 namespace isotherm {
 namespace {
@@ -33,13 +35,17 @@ Status Validate(const SpoolOptions& options) {
   problems.CheckRange("expert.queue_frames", options.expert().queue_frames(), 1, 100'000);
   problems.CheckRange("expert.flush_interval_s", options.expert().flush_interval_s(), 0.05, 1.0);
   problems.CheckRange("resume_s", options.resume_s(), 0.0, 86'400.0);
+  problems.CheckRange("quota_gb", options.quota_gb(), 0.0, 1'000'000.0);
   problems.CheckRange("expert.reserve_s", options.expert().reserve_s(), 0.0, 86'400.0);
   problems.CheckRange("expert.reserve_mb", options.expert().reserve_mb(), 0, 1'000'000);
   problems.CheckRange("expert.warn_s", options.expert().warn_s(), 0.0, 86'400.0);
   return problems.ToStatus();
 }
 
-Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options) {
+Spool::Spool(SpoolParts parts)
+    : parts_(std::move(parts)),
+      disk_(parts_.options),
+      quota_(parts_.options.quota_gb(), parts_.recordings_size) {
   if (parts_.before != nullptr) TakeOver(*parts_.before);
 }
 
@@ -77,7 +83,9 @@ Status Spool::BeginFile() {
 }
 
 void Spool::BeginFileWhenDue() {
-  if (IsRecording() || at_reserve_ || parts_.clock.SteadyNow() < retry_at_) return;
+  if (IsRecording()) return;
+  LookAtDisk();
+  if (at_reserve_ || parts_.clock.SteadyNow() < retry_at_) return;
   if (const Status begun = BeginFile(); !begun.ok()) Fail(begun);
 }
 
@@ -118,21 +126,64 @@ void Spool::LookAtDisk() {
   if (now < next_look_) return;
   next_look_ = now + kLookInterval;
   AskForFreeBytes();
-  if (!free_bytes_) return;
-  const std::uint64_t open_bytes = IsRecording() ? file_->writer->stats().bytes : 0;
-  const DiskLevel before =
-      std::exchange(level_, disk_.Update(now, *free_bytes_, closed_.bytes + open_bytes));
+  if (!free_bytes_ && parts_.options.quota_gb() == 0.0) return;
+  const DiskLevel before = std::exchange(level_, Measure());
+  if (level_ == DiskLevel::kReserve) MakeRoom();
   if (level_ == DiskLevel::kReserve) return EndAtReserve();
   if (std::exchange(at_reserve_, false)) {
     LOG(Spool, Info) << "there is space on the disk again, free_mb="
-                     << std::lround(static_cast<double>(*free_bytes_) / kBytesPerMb)
+                     << std::lround(static_cast<double>(free_bytes_.value_or(0)) / kBytesPerMb)
                      << "; frames not recorded=" << NotRecorded() - not_recorded_before_;
     problem_ = OkStatus();
   }
   if (level_ == DiskLevel::kLow && before == DiskLevel::kEnough) {
-    LOG(Spool, Warning) << "the disk of " << path_.string() << " is full in "
+    LOG(Spool, Warning) << (disk_.is_quota_first() ? "the quota of recordings (spool.quota_gb)"
+                                                   : "the disk")
+                        << " of " << path_.string()
+                        << (disk_.is_quota_first() ? " is used up in " : " is full in ")
                         << std::lround(disk_.left_s() / 60.0)
                         << " min: delete old recordings, or end the scan in time";
+  }
+}
+
+DiskLevel Spool::Measure() {
+  const SteadyTime now = parts_.clock.SteadyNow();
+  if (MayDelete() && parts_.deletable_size && now >= deletable_due_) {
+    deletable_due_ = now + QuotaWatch::kInterval;
+    deletable_bytes_ = parts_.deletable_size();
+  }
+  const std::uint64_t own_bytes = OwnBytes();
+  // Without an answer the disk is not what ends the recording.
+  return disk_.Update(now,
+                      {free_bytes_.value_or(std::numeric_limits<std::uint64_t>::max()),
+                       quota_.Left(now, own_bytes), deletable_bytes_},
+                      own_bytes, at_reserve_);
+}
+
+std::uint64_t Spool::OwnBytes() const {
+  return closed_.bytes + (IsRecording() ? file_->writer->stats().bytes : 0);
+}
+
+bool Spool::MayDelete() const {
+  return parts_.options.when_full() == DELETE_FETCHED && parts_.make_room;
+}
+
+void Spool::MakeRoom() {
+  while (MayDelete() && level_ == DiskLevel::kReserve) {
+    const std::uint64_t free_before = free_bytes_.value_or(0);
+    const bool is_for_disk = !disk_.is_quota_first();
+    // A file system that keeps what is deleted (snapshots, hard links) would lose all for nothing.
+    if (is_for_disk && futile_at_ && free_before <= *futile_at_) return;
+    const std::optional<DeletedRecording> deleted = parts_.make_room();
+    if (!deleted) return;
+    LOG(Spool, Warning) << "deleted " << deleted->name << ", which was fetched, to make room: "
+                        << std::lround(static_cast<double>(deleted->bytes) / kBytesPerMb) << " MB";
+    quota_.AskAgain();
+    deletable_due_ = {};
+    AskForFreeBytes();
+    level_ = Measure();
+    futile_at_.reset();
+    if (is_for_disk && free_bytes_.value_or(0) <= free_before) futile_at_ = free_before;
   }
 }
 
@@ -152,11 +203,18 @@ void Spool::AskForFreeBytes() {
 void Spool::EndAtReserve() {
   if (std::exchange(at_reserve_, true)) return;
   const Status closed = IsRecording() ? CloseFile() : OkStatus();
+  const std::string what =
+      disk_.is_quota_first()
+          ? fmt::format("all recordings take their {:g} GB (spool.quota_gb)",
+                        parts_.options.quota_gb())
+          : fmt::format(
+                "the disk is full but for its reserve of {:.0f} MB (spool.expert.reserve_mb, "
+                "reserve_s)",
+                disk_.reserve_bytes() / kBytesPerMb);
   problem_ = ResourceExhausted(
-      fmt::format("the disk is full but for its reserve of {:.0f} MB (spool.expert.reserve_mb, "
-                  "reserve_s): {} is "
-                  "complete up to here, no frame is recorded from now on; delete old recordings",
-                  disk_.reserve_bytes() / kBytesPerMb, path_.string()));
+      fmt::format("{}: {} is complete up to here, no frame is recorded from now on; delete old "
+                  "recordings, or fetch them and set spool.when_full=DELETE_FETCHED",
+                  what, path_.empty() ? "the recording" : path_.string()));
   if (first_error_.ok()) first_error_ = closed.ok() ? problem_ : closed;
   LOG(Spool, Error) << problem_.message() << "; publishing goes on";
 }
@@ -281,11 +339,15 @@ void Spool::UpdateCounters() {
 }
 
 std::string Spool::Brief() const {
-  if (at_reserve_) return "NOT RECORDING: disk full";
+  const bool is_quota = disk_.is_quota_first();
+  if (at_reserve_) {
+    return is_quota ? "NOT RECORDING: quota used up" : "NOT RECORDING: disk full";
+  }
   if (!problem_.ok()) return IsRecording() ? "disk was failing" : "NOT RECORDING: disk fails";
   if (free_bytes_unknown_) return "free space of the disk not known";
   if (level_ != DiskLevel::kLow) return "";
-  return fmt::format("disk full in {:.0f} min", disk_.left_s() / 60.0);
+  return fmt::format("{} in {:.0f} min", is_quota ? "quota used up" : "disk full",
+                     disk_.left_s() / 60.0);
 }
 
 void Spool::UpdateStatus() {

@@ -13,12 +13,14 @@
 #include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
 #include "common/messages/messages.h"
+#include "common/recording/quota_watch.h"
 #include "common/recording/recording.h"
 #include "common/time/back_off.h"
 #include "common/time/clock.h"
 #include "edge/frame_counters/frame_counters.h"
 #include "edge/spool/disk_watch.h"
 #include "edge/spool/encoded_frame.h"
+#include "edge/spool/older_recordings.h"
 #include "edge/spool/recorded_frames.h"
 
 namespace isotherm {
@@ -54,6 +56,12 @@ struct SpoolParts {
   /// Tells what the recording has already of a scan that goes on; nullptr: a new one. Need not
   /// outlive the construction.
   const InterruptedScan* before = nullptr;
+  /// Says what all recordings take by now, this one included, for the quota. May be empty.
+  std::function<std::uint64_t()> recordings_size{};
+  /// Says what older recordings take that may be deleted. May be empty.
+  std::function<std::uint64_t()> deletable_size{};
+  /// Deletes the one of them that may go first; nullopt: none may. May be empty.
+  std::function<std::optional<DeletedRecording>()> make_room{};
 };
 
 /// Holds the state of the recording.
@@ -73,7 +81,8 @@ struct SpoolStatus {
 ///   recording --(reserve left)---> full ----(space was made, a new file)---------------> recording
 ///
 /// After an error the file is closed as it is, for what the disk did with it is not known, and
-/// never touched again; frames that no file has are counted. At the reserve it is closed properly.
+/// never touched again; frames that no file has are counted. At the reserve, or at the end of the
+/// quota, it is closed properly, unless older recordings may be deleted.
 /// A file that got no frame is removed. Nothing of this ends the scan. Thread-bound but for
 /// status(): one thread adds, tends and closes.
 class Spool {
@@ -106,6 +115,13 @@ class Spool {
   Status BeginFile();
   void LookAtDisk();
   void AskForFreeBytes();
+  /// Says how much room there is, once the disk has told what is free.
+  DiskLevel Measure();
+  /// Returns what this recording has written, in all its files.
+  std::uint64_t OwnBytes() const;
+  /// Deletes what may go, until there is room or nothing more may.
+  void MakeRoom();
+  bool MayDelete() const;
   void EndAtReserve();
   Status WriteFrame(const EncodedFrame& frame);
   Status WriteRig(const RigUpdate& update);
@@ -128,6 +144,11 @@ class Spool {
 
   const SpoolParts parts_;
   DiskWatch disk_;
+  QuotaWatch quota_;
+  std::uint64_t deletable_bytes_ = 0;
+  SteadyTime deletable_due_{};  ///< Asked for again.
+  /// With so much free, deleting a recording gave nothing.
+  std::optional<std::uint64_t> futile_at_;
   std::optional<RecordingFile> file_;
   std::filesystem::path path_;
   RecordingStats closed_{};  ///< Sum over the files before.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <numeric>
 
 #include "edge/options/edge_options.pb.h"
 #include "edge/spool/testing/fake_recording_writer.h"
@@ -35,8 +36,15 @@ class SpoolTest : public testing::Test {
   void Start(std::uint64_t room = UINT64_MAX) {
     room_ = room;
     spool_ = std::make_unique<Spool>(SpoolParts{[this] { return NextFile(); },
-                                                [this] { return free_bytes_; }, options_, clock_,
-                                                counters_});
+                                                [this] { return free_bytes_; },
+                                                options_,
+                                                clock_,
+                                                counters_,
+                                                {},
+                                                nullptr,
+                                                [this] { return older_bytes_ + OwnBytes(); },
+                                                [this] { return Deletable(); },
+                                                [this] { return MakeRoom(); }});
     spool_->Tend(false);
   }
   Result<RecordingFile> NextFile() {
@@ -45,6 +53,31 @@ class SpoolTest : public testing::Test {
     files_.emplace_back();
     return RecordingFile{std::filesystem::path(testing::TempDir()) / "not-there.mcap",
                          std::make_unique<FakeRecordingWriter>(files_.back(), room_)};
+  }
+  std::uint64_t OwnBytes() const {
+    std::uint64_t bytes = 0;
+    for (const FakeRecording& file : files_) bytes += file.bytes;
+    return bytes;
+  }
+  std::uint64_t Deletable() const {
+    return std::accumulate(fetched_.begin(), fetched_.end(), std::uint64_t{0});
+  }
+  /// Older recordings go from the front.
+  std::optional<DeletedRecording> MakeRoom() {
+    if (fetched_.empty()) return std::nullopt;
+    const std::uint64_t bytes = fetched_.front();
+    fetched_.pop_front();
+    older_bytes_ -= bytes;
+    if (deleting_frees_) free_bytes_ = *free_bytes_ + bytes;
+    return DeletedRecording{"older.mcap", bytes};
+  }
+  /// At 5 MB/s.
+  void RecordFor(int seconds) {
+    for (int i = 0; i < seconds; ++i) {
+      clock_.Advance(std::chrono::seconds(1));
+      files_.back().bytes += 5 * kMb;
+      Record(0);
+    }
   }
   /// As the spool's thread does it.
   void Record(std::uint64_t number) {
@@ -58,6 +91,9 @@ class SpoolTest : public testing::Test {
   FakeClock clock_;
   std::uint64_t room_ = UINT64_MAX;
   Result<std::uint64_t> free_bytes_ = 1'000'000 * kMb;
+  std::uint64_t older_bytes_ = 0;
+  std::deque<std::uint64_t> fetched_;  ///< Sizes of older recordings that may be deleted.
+  bool deleting_frees_ = true;
   bool disk_works_ = true;
   int tries_ = 0;
   std::deque<FakeRecording> files_;
@@ -209,30 +245,100 @@ TEST_F(SpoolTest, F43ADiskThatHasProvenItselfIsTriedAgainSoonWhenItFails) {
 
 TEST_F(SpoolTest, F41AtTheReserveTheFileIsEndedProperlyAndGoesOnWhenThereIsSpace) {
   Start();
-  const auto record_for = [this](int seconds) {
-    for (int i = 0; i < seconds; ++i) {
-      clock_.Advance(std::chrono::seconds(1));
-      files_.back().bytes += 5 * kMb;
-      Record(0);
-    }
-  };
-  record_for(10);
+  RecordFor(10);
   EXPECT_EQ(spool_->status().brief, "");
   free_bytes_ = 600 * kMb + 5 * 60 * 5 * kMb;  // The reserve is 120 s of 5 MB/s.
-  record_for(1);
+  RecordFor(1);
   EXPECT_EQ(spool_->status().brief, "disk full in 5 min");
   free_bytes_ = 599 * kMb;
   const std::uint64_t recorded = depth().recorded;
-  record_for(10);
+  RecordFor(10);
   EXPECT_TRUE(files_[0].closed);
   EXPECT_EQ(files_.size(), 1U);
   EXPECT_EQ(depth().recorded, recorded + 1) << "the frame that came before the look";
   EXPECT_EQ(depth().record_failed, 9U);
   EXPECT_EQ(spool_->status().brief, "NOT RECORDING: disk full");
   free_bytes_ = 5000 * kMb;
-  record_for(2);
+  RecordFor(2);
   ASSERT_EQ(files_.size(), 2U);
   EXPECT_GE(files_[1].depth_frames.size(), 1U);
+}
+
+TEST_F(SpoolTest, F41AtTheEndOfTheQuotaTheFileIsEndedProperly) {
+  options_.set_quota_gb(1.0);
+  older_bytes_ = 900 * kMb;
+  fetched_ = {900 * kMb};  // Nobody has allowed to delete it.
+  Start();
+  RecordFor(10);
+  EXPECT_EQ(spool_->status().brief, "quota used up in 0 min");
+  EXPECT_FALSE(files_[0].closed);
+  RecordFor(15);
+  EXPECT_TRUE(files_[0].closed);
+  EXPECT_LE(OwnBytes(), 130 * kMb);
+  EXPECT_EQ(files_.size(), 1U);
+  EXPECT_EQ(spool_->status().brief, "NOT RECORDING: quota used up");
+  EXPECT_NE(spool_->status().problem.find("spool.quota_gb"), std::string::npos);
+  older_bytes_ = 0;  // By hand.
+  for (int i = 0; i < 20; ++i) {
+    clock_.Advance(std::chrono::seconds(1));
+    Record(0);
+  }
+  EXPECT_EQ(files_.size(), 2U);
+}
+
+TEST_F(SpoolTest, F41AQuotaThatIsUsedUpBeforehandGetsNoFrame) {
+  options_.set_quota_gb(1.0);
+  older_bytes_ = 1000 * kMb;
+  Start();
+  RecordFor(0);
+  Record(0);
+  EXPECT_EQ(files_.size(), 0U);
+  EXPECT_EQ(depth().record_failed, 1U);
+}
+
+TEST_F(SpoolTest, F41OlderRecordingsThatWereFetchedMakeRoom) {
+  options_.set_when_full(DELETE_FETCHED);
+  options_.set_quota_gb(2.0);
+  older_bytes_ = 1900 * kMb;
+  fetched_ = {100 * kMb, 300 * kMb, 300 * kMb};
+  Start();
+  RecordFor(30);
+  EXPECT_EQ(fetched_.size(), 2U) << "one is enough by now";
+  EXPECT_EQ(spool_->status().brief, "quota used up in 2 min") << "with what may be deleted";
+  RecordFor(110);
+  EXPECT_EQ(fetched_.size(), 0U);
+  EXPECT_FALSE(files_[0].closed) << "the last one has room for a minute";
+  EXPECT_EQ(depth().record_failed, 0U);
+  RecordFor(100);
+  EXPECT_EQ(files_.size(), 1U);
+  EXPECT_TRUE(files_[0].closed) << "what was not fetched stays";
+  EXPECT_LE(older_bytes_ + depth().recorded * 5 * kMb, 2020 * kMb);
+}
+
+TEST_F(SpoolTest, F41TheDisksReserveIsMadeRoomForAsWell) {
+  options_.set_when_full(DELETE_FETCHED);
+  fetched_ = {90 * kMb, 900 * kMb};
+  older_bytes_ = 990 * kMb;
+  Start();
+  RecordFor(10);
+  free_bytes_ = 599 * kMb;
+  RecordFor(5);
+  EXPECT_EQ(fetched_.size(), 1U);
+  EXPECT_FALSE(files_[0].closed);
+  EXPECT_EQ(depth().record_failed, 0U);
+}
+
+TEST_F(SpoolTest, F41WhereDeletingFreesNothingNotAllIsDeleted) {
+  options_.set_when_full(DELETE_FETCHED);
+  fetched_ = {90 * kMb, 90 * kMb, 90 * kMb, 90 * kMb};
+  older_bytes_ = 360 * kMb;
+  deleting_frees_ = false;
+  Start();
+  RecordFor(10);
+  free_bytes_ = 599 * kMb;
+  RecordFor(60);
+  EXPECT_EQ(fetched_.size(), 3U);
+  EXPECT_TRUE(files_[0].closed);
 }
 
 TEST_F(SpoolTest, F41AFreeSpaceThatIsNotKnownIsNoFullDisk) {

@@ -7,13 +7,14 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/child_process.h"
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/recording/recording.h"
 #include "common/simulation/options.h"
 #include "common/simulation/render_recording.h"
 #include "common/simulation/simulation_options.pb.h"
-#include "ground/cli/child_process.h"
+#include "common/simulation/true_surface.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/evaluation/true_poses.h"
 #include "ground/options/ground_options.pb.h"
@@ -71,7 +72,6 @@ Result<std::vector<std::string>> GroundArguments(const DemoRequest& request,
   const auto poses = ReadTruePoses(recording);
   if (!poses) return Err(poses.error());
   // The result is then in the simulation's world, and the volume lies where the scene is.
-  const PoseOptions first = ToOptions(poses->front().T_world_depth);
   std::vector<std::string> arguments{"--once",
                                      "--output",
                                      request.output.string(),
@@ -81,13 +81,8 @@ Result<std::vector<std::string>> GroundArguments(const DemoRequest& request,
                                      std::to_string(request.domain),
                                      "--set",
                                      "live.expert.record_viewable=false"};
-  for (const auto& [name, value] :
-       {std::pair("x_m", first.x_m()), std::pair("y_m", first.y_m()), std::pair("z_m", first.z_m()),
-        std::pair("qx", first.qx()), std::pair("qy", first.qy()), std::pair("qz", first.qz()),
-        std::pair("qw", first.qw())}) {
-    arguments.emplace_back("--set");
-    arguments.push_back(fmt::format("volume.expert.initial_pose.{}={}", name, value));
-  }
+  const std::vector<std::string> pose = InitialPoseArguments(poses->front().T_world_depth);
+  arguments.insert(arguments.end(), pose.begin(), pose.end());
   return arguments;
 }
 

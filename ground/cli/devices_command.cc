@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "ground/cli/child_process.h"
+#include "common/base/child_process.h"
 #include "ground/cli/command.h"
 
 namespace isotherm {

@@ -27,6 +27,9 @@ What is fetched comes in pieces with checksums. An attempt that was ended or cut
 on there, after comparing it with the rig's. While the rig scans, it waits: the scan has the link for itself. The rig gives no
 more than link.expert.fetch_mb_per_s (8 MB/s).
 
+With spool.when_full=DELETE_FETCHED the rig deletes the oldest recordings that were fetched whole when it needs the room; it
+keeps all others.
+
 A file of a recording that was interrupted (a power cut) has no index yet; `isotherm inspect --repair` adds it.
 
 Exit status: 0 done, 69 no rig there or it does not answer any more, 64 several rigs and no --edge-id, or another file is in
@@ -122,6 +125,18 @@ Status FetchOne(const RemoteRecording& recording, const std::string& folder,
   return OkStatus();
 }
 
+/// Tells the rig that a recording is here; one that does not know only keeps its own longer than it
+/// must. Returns whether it listens.
+bool Tell(const RemoteRecording& recording, RecordingFetcher& fetcher) {
+  const Status told = fetcher.TellKept(recording);
+  if (told.ok()) return true;
+  std::fputs(fmt::format("the rig does not know that {} was fetched, and keeps it: {}\n",
+                         Printable(recording.name), PrintableLines(told.message()))
+                 .c_str(),
+             stderr);
+  return told.code() != StatusCode::kUnavailable;
+}
+
 Status Fetch(const FetchArguments& arguments, RecordingFetcher& fetcher) {
   const Result<std::vector<RemoteRecording>> recordings = fetcher.List();
   if (!recordings) return recordings.error();
@@ -132,8 +147,10 @@ Status Fetch(const FetchArguments& arguments, RecordingFetcher& fetcher) {
   const Result<std::vector<RemoteRecording>> chosen = Chosen(arguments, *recordings);
   if (!chosen) return chosen.error();
   Status first_error;
+  bool listens = true;
   for (const RemoteRecording& recording : *chosen) {
     const Status fetched = FetchOne(recording, arguments.folder, fetcher);
+    if (fetched.ok() && listens) listens = Tell(recording, fetcher);
     if (fetched.ok()) continue;
     // What stands in the way of one file does not of the others.
     if (fetched.code() == StatusCode::kUnavailable || chosen->size() == 1) return fetched;

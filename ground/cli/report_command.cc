@@ -11,10 +11,10 @@
 #include <optional>
 #include <thread>
 
+#include "common/base/child_process.h"
 #include "common/base/output_file.h"
 #include "common/base/read_file.h"
 #include "common/security/sha256.h"
-#include "ground/cli/child_process.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/interpretation_arguments.h"

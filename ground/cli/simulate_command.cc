@@ -12,6 +12,7 @@
 #include "common/simulation/options.h"
 #include "common/simulation/render_recording.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/true_surface.h"
 #include "ground/cli/command.h"
 #include "ground/cli/simulation_files.h"
 

@@ -24,12 +24,6 @@ Status RenderToFile(const SimulationOptions& options, const std::filesystem::pat
                     const std::function<void(double fraction)>& progress,
                     const std::stop_token& stop = {});
 
-/// The true surface in `world`, 2 mm between samples, with how many poses of the scan (one in ten)
-/// see each.
-Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem::path& path,
-                        const std::function<void(double fraction)>& progress = {},
-                        const std::stop_token& stop = {});
-
 /// `threads`, or one per core for 0.
 int ChosenThreads(int threads);
 

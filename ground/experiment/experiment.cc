@@ -63,6 +63,8 @@ constexpr Experiment kExperiments[] = {
      &RunNucDriftExperiment},
     {"guidance", "8.2", "Who follows the feedback is done sooner than who scans by plan.",
      &RunGuidanceExperiment},
+    {"link", "3.3", "What a poor link loses comes later: the result is that of a good one.",
+     &RunLinkExperiment},
 };
 
 }  // namespace

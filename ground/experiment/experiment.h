@@ -106,5 +106,6 @@ Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunGuidanceExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunLinkExperiment(ThreadPool& pool);
 
 }  // namespace isotherm

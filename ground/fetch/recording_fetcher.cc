@@ -308,4 +308,19 @@ Status RecordingFetcher::Fetch(const RemoteRecording& recording,
   return OkStatus();
 }
 
+Status RecordingFetcher::TellKept(const RemoteRecording& recording) {
+  bool is_asked = false;
+  return Exchange(
+      [&]() -> std::optional<RecordingRequest> {
+        if (std::exchange(is_asked, true)) return std::nullopt;
+        return RecordingRequest{.kind = RecordingRequestKind::kKept,
+                                .recording = recording.name,
+                                .offset = recording.size};
+      },
+      [&](const RecordingRequest& /*request*/, RecordingPiece&& piece) {
+        return Check(piece, recording);
+      },
+      1);
+}
+
 }  // namespace isotherm

@@ -57,6 +57,9 @@ class RecordingFetcher {
   /// kIoError if the disk does not take it. What has come stays for the next attempt.
   Status Fetch(const RemoteRecording& recording, const std::filesystem::path& folder,
                const Progress& progress);
+  /// Tells the rig that a recording is here whole, so that it may delete its own when it needs the
+  /// room. An error if it does not know that then; kUnavailable: it has not answered.
+  Status TellKept(const RemoteRecording& recording);
 
  private:
   /// Says what to ask next; nullopt: nothing more.

@@ -6,6 +6,7 @@
 #include <deque>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
 
 #include "common/recording/mcap_records.h"
@@ -45,6 +46,7 @@ class FakeRig final : public RecordingWay {
   }
 
   std::vector<std::pair<std::string, std::vector<std::uint8_t>>> recordings;
+  std::map<std::string, std::uint64_t> kept;  ///< Holds the sizes that the rig was told of.
   double loss = 0.0, doubled = 0.0, damaged = 0.0;
   std::uint64_t answers_left = UINT64_MAX;  ///< Then it is silent.
   int busy_for = 0;                         ///< Requests.
@@ -82,6 +84,10 @@ class FakeRig final : public RecordingWay {
     }
     const std::vector<std::uint8_t>& all = found->second;
     piece.size = all.size();
+    if (request.kind == RecordingRequestKind::kKept) {
+      kept.emplace(request.recording, request.offset);
+      return piece;
+    }
     if (request.offset + request.length > all.size()) {
       piece.outcome = RecordingOutcome::kUnreadable;
       return piece;
@@ -250,6 +256,16 @@ TEST_F(RecordingFetcherTest, ANameThatLeadsElsewhereIsNotTaken) {
     const Status refused = Make().Fetch({name, 1}, folder_.path(), [](std::uint64_t) {});
     EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument) << name;
   }
+}
+
+TEST_F(RecordingFetcherTest, TheRigIsToldWhatIsKept) {
+  rig_.busy_for = 1;
+  RecordingFetcher fetcher = Make();
+  EXPECT_TRUE(fetcher.TellKept({.name = kName, .size = bytes_.size()}).ok());
+  EXPECT_EQ(rig_.kept.at(kName), bytes_.size());
+  EXPECT_EQ(fetcher.TellKept({.name = kName, .size = 5}).code(), StatusCode::kFailedPrecondition)
+      << "it is another one by now";
+  EXPECT_EQ(fetcher.TellKept({.name = "gone.mcap", .size = 5}).code(), StatusCode::kNotFound);
 }
 
 }  // namespace

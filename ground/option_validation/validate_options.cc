@@ -54,6 +54,10 @@ Status Validate(const LiveOptions& o) {
         "live.expert.max_clock_offset_s must be 0 (no alarm) or 0.001 to 3600 s, got {}",
         o.expert().max_clock_offset_s()));
   }
+  if (!(o.quota_gb() >= 0.0 && o.quota_gb() <= 1e6)) {
+    return InvalidArgument(
+        fmt::format("live.quota_gb must be 0 (no quota) to 1000000 GB, got {}", o.quota_gb()));
+  }
   if (o.output_dir().empty()) return InvalidArgument("live.output_dir must name a folder");
   return OkStatus();
 }

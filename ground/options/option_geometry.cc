@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "ground/options/ground_options.pb.h"
 
@@ -52,6 +53,20 @@ PoseOptions ToOptions(const RigidTransform& pose) {
   options.set_qz(rotation.z());
   options.set_qw(rotation.w());
   return options;
+}
+
+std::vector<std::string> InitialPoseArguments(const RigidTransform& pose) {
+  const PoseOptions options = ToOptions(pose);
+  std::vector<std::string> arguments;
+  for (const auto& [name, value] :
+       {std::pair("x_m", options.x_m()), std::pair("y_m", options.y_m()),
+        std::pair("z_m", options.z_m()), std::pair("qx", options.qx()),
+        std::pair("qy", options.qy()), std::pair("qz", options.qz()),
+        std::pair("qw", options.qw())}) {
+    arguments.emplace_back("--set");
+    arguments.push_back(fmt::format("volume.expert.initial_pose.{}={}", name, value));
+  }
+  return arguments;
 }
 
 Result<Eigen::AlignedBox3d> ToBox(const BoxOptions& box) {

@@ -212,7 +212,7 @@ TEST_F(DistributorTest, F42WhatTheDiskDoesNotTakeIsCountedAndStillReconstructed)
   EXPECT_EQ(Names(Recorded()), "E7") << "an end is never left out";
 }
 
-TEST_F(DistributorTest, LateFramesAreRecordedOnly) {
+TEST_F(DistributorTest, F22LateFramesAreRecordedOnly) {
   Start();
   Rig();
   distributor_->OnLate(Frame(3));

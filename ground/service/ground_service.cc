@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/exit_deadline.h"
+#include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/base/pause.h"
 #include "common/base/service.h"
@@ -58,9 +59,11 @@ Nanoseconds DiskLimit() {
 Result<std::unique_ptr<Participant>> Join(int domain, const ServiceMode& mode,
                                           const TransportEnvironment& environment,
                                           const Clock& clock, const std::stop_token& stop) {
-  if (mode.single_scan) return Participant::Create(environment, domain);
-  return JoinDomain(environment, domain, clock, stop,
-                    [](const Status& reason) { NotifyWaiting(reason.message()); });
+  const Announcement announcement{Role::kGround, "", HostName()};
+  if (mode.single_scan) return Participant::Create(environment, domain, announcement);
+  return JoinDomain(
+      environment, domain, clock, stop,
+      [](const Status& reason) { NotifyWaiting(reason.message()); }, announcement);
 }
 
 /// The service's threads and what joins them. Thread-bound to the main thread.

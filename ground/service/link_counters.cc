@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "common/base/units.h"
+#include "common/messages/backlog.h"
 #include "ground/subscriber/clock_watch.h"
 
 namespace isotherm {
@@ -96,7 +97,7 @@ std::string StreamText(const char* name, const StreamCounters& counters, std::ui
 bool IsAnyOnTheRigOnly(const StreamCounters& counters) {
   return counters.missing > 0 ||
          std::ranges::any_of(counters.dropped_by_rig, [](const DropCount& drop) {
-           return drop.reason == "queue full" && drop.frames > 0;
+           return (drop.reason == "queue full" || drop.reason == kLeftForLater) && drop.frames > 0;
          });
 }
 
@@ -155,6 +156,7 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
       recording.left_out(NotRecorded::kDiskFailed) + recording.left_out(NotRecorded::kUnwritable);
   for (const std::filesystem::path& file : recording.files)
     link["recording_files"].push_back(file.filename().string());
+  link["most_lacking_frames"] = counters.most_lacking;
   link["refused_samples"] = counters.refused_samples;
   link["recording_finished"] = recording.closed;
   if (!recording.status.ok()) link["recording_failed_because"] = recording.status.message();

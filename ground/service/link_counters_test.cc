@@ -60,6 +60,17 @@ TEST(LinkCountersTest, F28WhatTheRigDroppedItselfIsInTheSummaryWithItsReasons) {
   EXPECT_THAT(CountersText({}, {}), Not(HasSubstr("the rig dropped")));
 }
 
+TEST(LinkCountersTest, WhatWasLeftForLaterAndNeverCameIsOnTheRig) {
+  SessionCounters counters = NarrowLink();
+  counters.most_lacking = 763;
+  counters.depth.dropped_by_rig = {{"left for later", 763}};
+  EXPECT_THAT(CountersText(counters, {}), HasSubstr("isotherm merge-recordings"));
+  Json link;
+  DescribeCounters(counters, {}, link);
+  EXPECT_EQ(link["depth"]["dropped_by_rig"]["left_for_later"], 763);
+  EXPECT_EQ(link["most_lacking_frames"], 763);
+}
+
 TEST(LinkCountersTest, WhereWhatIsMissingIsToBeHadIsSaid) {
   RecordingProgress recording;
   recording.path = "out/scan.mcap";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -27,6 +28,8 @@ constexpr std::uint64_t kClosingBytes = 5U << 20;
 constexpr std::uint64_t kMaxReserveBytes = 100U << 20;
 constexpr std::uint64_t kReservePart = 10;
 constexpr double kMegabyte = 1 << 20;
+// As the rig does (spool.expert.warn_s).
+constexpr double kWarnBefore_s = 600.0;
 
 void AddCounts(const ScanRecorder& recorder, RecordingProgress& progress) {
   const auto add = [](const RecorderCounts& counts, std::uint64_t& frames,
@@ -73,7 +76,9 @@ void RecordingLoop::Run(RecordingQueue& queue, const std::stop_token& stop) {
 void RecordingLoop::Handle(const SessionStart& start) {
   End();
   start_ = start;
-  nearly_full_ = false;
+  nearly_full_ = has_warned_ = false;
+  quota_.emplace(options_.live().quota_gb(),
+                 [this] { return FolderSize(options_.live().output_dir()); });
   if (const Status prepared = PrepareOutputDir(start.folder); !prepared.ok()) {
     LOG(Ground, Error) << "this scan's folder cannot be used: " << prepared.message();
   }
@@ -129,11 +134,15 @@ void RecordingLoop::Handle(const ExternalOdometrySample& sample) {
   if (recorder_) recorder_->Write(sample);
 }
 
-std::uint64_t RecordingLoop::ReserveBytes(std::uint64_t capacity) const {
+std::uint64_t RecordingLoop::QuotaReserveBytes() const {
   // The estimate is rough, and the model grows on.
   const std::uint64_t expected = board_.result_bytes;
-  return kClosingBytes +
-         std::max(expected + expected / 2, std::min(kMaxReserveBytes, capacity / kReservePart));
+  return kClosingBytes + expected + expected / 2;
+}
+
+std::uint64_t RecordingLoop::ReserveBytes(std::uint64_t capacity) const {
+  return std::max(QuotaReserveBytes(),
+                  kClosingBytes + std::min(kMaxReserveBytes, capacity / kReservePart));
 }
 
 std::optional<std::filesystem::space_info> RecordingLoop::SpaceOfDisk(
@@ -149,10 +158,18 @@ void RecordingLoop::LookAtDisk() {
   next_look_ = now + kLookInterval;
   const std::optional<std::filesystem::space_info> space = look_at_space_(start_.folder);
   if (!space) return;  // Writing will say what is wrong.
-  const std::uint64_t reserve = ReserveBytes(space->capacity);
+  const std::uint64_t of_quota = quota_->Left(now, start_.recording->Get().bytes);
+  const auto above = [](std::uint64_t bytes, std::uint64_t reserve) {
+    return bytes - std::min(bytes, reserve);
+  };
+  is_quota_first_ =
+      above(of_quota, QuotaReserveBytes()) < above(space->available, ReserveBytes(space->capacity));
+  const std::uint64_t free_bytes = is_quota_first_ ? of_quota : space->available;
+  const std::uint64_t reserve =
+      is_quota_first_ ? QuotaReserveBytes() : ReserveBytes(space->capacity);
   const double elapsed_s = ToSeconds(now - opened_);
   start_.recording->Update([&](auto& progress) {
-    progress.free_bytes = space->available;
+    progress.free_bytes = free_bytes;
     progress.reserve_bytes = reserve;
     // The first seconds hold metadata and half-filled chunks: their rate would tell a wrong time
     // until the disk is full.
@@ -163,7 +180,8 @@ void RecordingLoop::LookAtDisk() {
   const bool before =
       // Twice the reserve must be free before it goes on, so that it does not begin and end at the
       // limit.
-      std::exchange(nearly_full_, space->available <= (nearly_full_ ? 2 * reserve : reserve));
+      std::exchange(nearly_full_, free_bytes <= (nearly_full_ ? 2 * reserve : reserve));
+  WarnInTime();
   if (nearly_full_ && !before) StopForReserve(space->available, reserve);
   if (before && !nearly_full_) {
     LOG(Ground, Warning) << "there is room on the disk again, the recording goes on; "
@@ -172,13 +190,44 @@ void RecordingLoop::LookAtDisk() {
   }
 }
 
+std::optional<std::uint64_t> RecordingLoop::FolderSize(const std::filesystem::path& folder) {
+  using std::filesystem::recursive_directory_iterator;
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  recursive_directory_iterator entry(
+      folder, std::filesystem::directory_options::skip_permission_denied, error);
+  for (; !error && entry != recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code ignored;
+    if (!entry->is_regular_file(ignored) || entry->is_symlink(ignored)) continue;
+    const std::uintmax_t size = entry->file_size(ignored);
+    if (!ignored) bytes += size;
+  }
+  return error ? std::nullopt : std::optional(bytes);
+}
+
+void RecordingLoop::WarnInTime() {
+  const double left_s = start_.recording->Get().left_s();
+  if (has_warned_ || nearly_full_ || !(left_s < kWarnBefore_s)) return;
+  has_warned_ = true;
+  LOG(Ground, Warning) << (is_quota_first_ ? "the quota (live.quota_gb) is used up in "
+                                           : "the disk is full in ")
+                       << std::lround(left_s / 60.0)
+                       << " min, then the recording ends: free some space, or end the scan in time";
+}
+
 void RecordingLoop::StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes) {
   const auto& files = recorder_->files();
-  const Status why = ResourceExhausted(fmt::format(
-      "the recording {} stops here, because only {:.0f} MB are free on the disk and {:.0f} MB are "
-      "kept for the results; the scan goes on. Free some space",
-      (files.empty() ? start_.folder / "scan.mcap" : files.back()).string(),
-      static_cast<double>(free_bytes) / kMegabyte, static_cast<double>(reserve_bytes) / kMegabyte));
+  const std::string cause =
+      is_quota_first_
+          ? fmt::format("all that is in {} takes its {:g} GB (live.quota_gb) with the results",
+                        options_.live().output_dir(), options_.live().quota_gb())
+          : fmt::format(
+                "only {:.0f} MB are free on the disk and {:.0f} MB are kept for the results",
+                static_cast<double>(free_bytes) / kMegabyte,
+                static_cast<double>(reserve_bytes) / kMegabyte);
+  const Status why = ResourceExhausted(
+      fmt::format("the recording {} stops here, because {}; the scan goes on. Free some space",
+                  (files.empty() ? start_.folder / "scan.mcap" : files.back()).string(), cause));
   recorder_->EndFile(why);
   if (late_recorder_) late_recorder_->EndFile(why);
   LOG(Ground, Warning) << why.message();

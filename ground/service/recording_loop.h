@@ -9,6 +9,7 @@
 #include <stop_token>
 #include <utility>
 
+#include "common/recording/quota_watch.h"
 #include "common/time/clock.h"
 #include "common/time/thread_progress.h"
 #include "ground/options/ground_options.pb.h"
@@ -21,6 +22,7 @@ namespace isotherm {
 
 /// Records one session after the other, and leaves room on the disk for the results: the file ends
 /// when no more than these are expected to take is free, and another is begun when twice that is.
+/// It also ends when everything in the output folder takes live.quota_gb.
 /// Thread-bound to the recording thread.
 class RecordingLoop {
  public:
@@ -54,9 +56,16 @@ class RecordingLoop {
   void HandleFrame(const Frame& frame, Sensor sensor);
   static std::optional<std::filesystem::space_info> SpaceOfDisk(
       const std::filesystem::path& folder);
+  /// Returns what all files below a folder take, bytes.
+  /// nullopt if it changes meanwhile.
+  static std::optional<std::uint64_t> FolderSize(const std::filesystem::path& folder);
   /// Looks from time to time how much is free, and whether that is for the results.
   void LookAtDisk();
+  /// Returns what a disk of so many bytes keeps free, or the quota.
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
+  std::uint64_t QuotaReserveBytes() const;
+  /// Says once that it is not long until the recording ends.
+  void WarnInTime();
   void StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes);
   /// Returns where a frame goes; there is a recorder_.
   ScanRecorder& RecorderOf(bool is_late);
@@ -72,6 +81,9 @@ class RecordingLoop {
   SessionStart start_;
   std::unique_ptr<ScanRecorder> recorder_;
   std::unique_ptr<ScanRecorder> late_recorder_;  ///< Null before the first late frame.
+  std::optional<QuotaWatch> quota_;              ///< Begins anew with each session.
+  bool is_quota_first_ = false;                  ///< It ends before the disk is full.
+  bool has_warned_ = false;                      ///< In this session.
   bool nearly_full_ = false;                     ///< The space that is free is for the results.
   bool flushed_ = true;
   SteadyTime opened_{};

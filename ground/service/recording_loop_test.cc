@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
+#include <string>
 #include <thread>
 
 #include "common/recording/testing/recording_data.h"
@@ -165,6 +167,22 @@ TEST_F(RecordingLoopTest, F43WhatIsKeptForTheResultsIsNotTakenByFrames) {
   EXPECT_EQ(loop_.status().code(), StatusCode::kResourceExhausted) << "the recording has a hole";
 }
 
+TEST_F(RecordingLoopTest, F41AtTheEndOfTheQuotaTheRecordingEnds) {
+  options_.mutable_live()->set_output_dir(folder_.path());
+  options_.mutable_live()->set_quota_gb(0.02);
+  std::ofstream(folder_.path() / "older") << std::string(9'000'000, 'x');
+  Run();
+  Start();
+  EXPECT_EQ(FrameAtNextLook().depth_frames, 1U);
+  // Five megabytes are kept for the end of the file.
+  std::ofstream(folder_.path() / "results") << std::string(7'000'000, 'x');
+  clock_.Advance(11s);
+  RecordingProgress progress = FrameAtNextLook();
+  EXPECT_TRUE(progress.paused);
+  EXPECT_EQ(progress.left_out(NotRecorded::kDiskNearlyFull), 1U);
+  EXPECT_THAT(std::string(progress.status.message()), HasSubstr("live.quota_gb"));
+}
+
 TEST_F(RecordingLoopTest, HalfOfTheDiskIsRoomEnoughToBeginWith) {
   board_.result_bytes = kFreeBytes / 2;
   Run();
@@ -246,7 +264,7 @@ TEST_F(RecordingLoopTest, WithoutARecordingTheFolderIsThereForTheResults) {
   EXPECT_TRUE(tracker_->Get().path.empty());
 }
 
-TEST_F(RecordingLoopTest, WhatComesLateHasAFileOfItsOwn) {
+TEST_F(RecordingLoopTest, F22WhatComesLateHasAFileOfItsOwn) {
   Run();
   Start();
   Depths(4);

@@ -1,6 +1,8 @@
 #include "ground/service/recording_tracker.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "common/recording/disk_time.h"
 
@@ -32,11 +34,15 @@ std::uint64_t RecordingProgress::left_out(NotRecorded reason) const {
   return depth_left_out[reason] + thermal_left_out[reason];
 }
 
+double RecordingProgress::left_s() const {
+  if (!(bytes_per_s > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(free_bytes - std::min(free_bytes, reserve_bytes)) / bytes_per_s;
+}
+
 std::string DiskText(const RecordingProgress& progress) {
-  if (progress.path.empty() || progress.closed || !(progress.bytes_per_s > 0.0)) return {};
-  const std::uint64_t usable =
-      progress.free_bytes - std::min(progress.free_bytes, progress.reserve_bytes);
-  return DiskTimeText(static_cast<double>(usable) / progress.bytes_per_s);
+  const double left_s = progress.left_s();
+  if (progress.path.empty() || progress.closed || std::isnan(left_s)) return {};
+  return DiskTimeText(left_s);
 }
 
 RecordingProgress RecordingTracker::WaitUntilClosed(std::chrono::nanoseconds patience) const {

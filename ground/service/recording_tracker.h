@@ -54,6 +54,8 @@ struct RecordingProgress {
 
   std::uint64_t left_out() const;
   std::uint64_t left_out(NotRecorded reason) const;
+  /// Returns for how long the disk lasts, seconds; NaN = not known yet.
+  double left_s() const;
 };
 
 /// "disk: 3.2 h left", "disk: 40 min left"; empty if that is not known.

@@ -82,8 +82,9 @@ void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) 
     const std::uint64_t dropped = Dropped(situation.edge->depth) + Dropped(situation.edge->thermal);
     if (dropped > 0) parts.push_back(fmt::format("dropped by the rig {}", dropped));
     if (HasBacklog(*situation.edge)) {
-      parts.push_back(
-          fmt::format("{} frames to come from the rig's recording", situation.edge->spool_frames));
+      parts.push_back(fmt::format("{} frames to come from the rig's recording{}",
+                                  situation.edge->spool_frames,
+                                  LeftForLater(*situation.edge) > 0 ? " (link too narrow)" : ""));
     }
     if (const double age_s = situation.edge->feedback.p50_s; age_s > kOldFeedback_s)
       parts.push_back(fmt::format("advice is {:.1f} s old when it reaches the rig", age_s));

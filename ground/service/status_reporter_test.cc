@@ -156,6 +156,10 @@ TEST(StatusReporterTest, F25WhatIsStillToComeIsSaid) {
   EXPECT_THAT(StatusText(situation), Not(HasSubstr("to come")));
   situation.edge->spool_frames = 1180;
   EXPECT_THAT(StatusText(situation), HasSubstr("1180 frames to come from the rig's recording"));
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("too narrow")));
+  situation.edge->depth.dropped = {{"left for later", 700}};
+  EXPECT_THAT(StatusText(situation),
+              HasSubstr("1180 frames to come from the rig's recording (link too narrow)"));
 }
 
 TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {

@@ -16,11 +16,17 @@ using namespace std::chrono_literals;
 /// Frames that are taken of one stream before the other has its turn.
 constexpr int kFramesPerRound = 8;
 constexpr int kBackfillPerRound = 2;
+constexpr int kPiecesPerRound = 256;   ///< Some frames.
 constexpr int kMessagesPerRound = 64;  ///< More is somebody sending without end.
 /// These are more frames than a reader keeps: somebody sends without end.
 constexpr int kMaxTurnsBehindFrames = 32;
 /// A fast sender must not wait for the next interval.
 constexpr int kFramesPerReceipt = 8;
+/// At the beginning of a session the rig is told of each frame: from that it learns how much the
+/// link carries. Some seconds of both cameras.
+constexpr std::uint64_t kFirstFrames = 200;
+/// The rig learns this often how many pieces arrive.
+constexpr Nanoseconds kPieceReportInterval = 50ms;
 /// Presence is looked at this often.
 constexpr Nanoseconds kIdleInterval = 100ms;
 
@@ -83,18 +89,20 @@ bool DdsSubscriber::TakeRound() {
   const int taken = TakeDescriptions() + TakeMessages();
   const int depth_taken = TakeSamples(&ends_.depth, kFramesPerRound);
   const int thermal_taken = TakeSamples(&ends_.thermal, kFramesPerRound);
+  const int pieces_taken = TakePieces();
   // A few at a time: what is live comes first.
   const int backfill_taken = TakeSamples(&ends_.backfill_depth, kBackfillPerRound) +
                              TakeSamples(&ends_.backfill_thermal, kBackfillPerRound);
   // A description may end a session, whose last frames were sent before it on other topics: those
   // have arrived by now, and are taken first.
   const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerRound ||
+                               pieces_taken == kPiecesPerRound ||
                                backfill_taken >= kBackfillPerRound;
   if (!descriptions_.empty() &&
       (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames)) {
     AdmitDescriptions();
   }
-  return taken + depth_taken + thermal_taken + backfill_taken > 0;
+  return taken + depth_taken + thermal_taken + pieces_taken + backfill_taken > 0;
 }
 
 int DdsSubscriber::TakeDescriptions() {
@@ -111,8 +119,14 @@ int DdsSubscriber::TakeDescriptions() {
 
 void DdsSubscriber::AdmitDescriptions() {
   turns_behind_frames_ = 0;
-  for (auto& [peer, description] : std::exchange(descriptions_, {}))
-    gate_.Add(peer, std::move(description), clock_.SteadyNow());
+  for (auto& [peer, description] : std::exchange(descriptions_, {})) {
+    // It waited behind frames, and with a session that ended meanwhile the rig's place is free.
+    if (gate_.owner() != 0 && peer != gate_.owner() && !peers_.IsPresent(peer)) {
+      refusals_.Add(description, RefusalCause::kOtherWriter);
+    } else {
+      gate_.Add(peer, std::move(description), clock_.SteadyNow());
+    }
+  }
 }
 
 int DdsSubscriber::TakeMessages() {
@@ -133,6 +147,26 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
                   clock_.SteadyNow());
       },
       max_samples);
+}
+
+int DdsSubscriber::TakePieces() {
+  return ends_.pieces.Take(
+      [this](Received<FramePiece>&& received) {
+        if (!IsFollowed(received.edge_id)) return;
+        const PeerHandle peer = peers_.Identify(ends_.pieces, received.writer);
+        const SteadyTime now = clock_.SteadyNow();
+        auto frame = pieces_.Add(peer, gate_.owner(), std::move(received.message), now);
+        if (!frame) return;
+        gate_.Add(peer, {.content = std::move(*frame), .arrival = clock_.Now()}, now);
+      },
+      kPiecesPerRound);
+}
+
+void DdsSubscriber::ReportPieces(SteadyTime now) {
+  piece_report_due_ = now + kPieceReportInterval;
+  const std::optional<PieceReport> report = pieces_.TakeReport(gate_.owner());
+  // What is not reported is reported with the next.
+  if (report) static_cast<void>(ends_.piece_report.Write(followed_.edge_id(), *report));
 }
 
 void DdsSubscriber::OnAdmitted(const RigDescription& rig, CaptureTime /*arrival*/) {
@@ -157,6 +191,7 @@ void DdsSubscriber::OnAdmitted(const CommandResult& result, CaptureTime /*arriva
 void DdsSubscriber::OnAdmitted(const EdgeStatus& status, CaptureTime /*arrival*/) {
   const ClockReading now = ReadClocks(clock_);
   if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
+  echo_.OnStatus(gate_.owner(), status, now.steady);
   clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);
   sessions_.OnStatus(status, now.steady);
   sessions_.SetClock(clock_watch_.clock());
@@ -185,8 +220,12 @@ bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
 void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
   if (peer.message.role != Role::kEdge) return;
   const Status compatible = CheckCompatible(own_hello_, peer.message);
-  if (!compatible.ok()) return refusals_.all.Add(RefusalCause::kOtherVersion, compatible.message());
-  watch_.Add(peers_.Identify(ends_.peers, peer.writer), peer.edge_id, peer.message.host);
+  const PeerHandle process = peers_.Identify(ends_.peers, peer.writer);
+  if (!compatible.ok()) {
+    watch_.AddStranger(process);
+    return refusals_.all.Add(RefusalCause::kOtherVersion, compatible.message());
+  }
+  watch_.Add(process, peer.edge_id, peer.message.host);
   // An edge that waits for a ground has sent nothing else.
   followed_.See(peer.edge_id);
 }
@@ -196,7 +235,8 @@ void DdsSubscriber::Housekeep() {
   const SteadyTime now = clock_.SteadyNow();
   depth_.DeliverDue(now);
   thermal_.DeliverDue(now);
-  if (now >= receipt_due_ || frames_since_receipt_ >= kFramesPerReceipt) SendReceipt(now);
+  if (now >= receipt_due_ || frames_since_receipt_ >= frames_per_receipt_) SendReceipt(now);
+  if (now >= piece_report_due_) ReportPieces(now);
   CloseSessions(now);
   if (now >= look_due_) LookAround(now);
   KeepCounters();
@@ -213,6 +253,8 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   const std::string edge_id = followed_.edge_id();
   const RigSighting sighting =
       watch_.Look(now, edge_id, ends_.status.matched_writers() > 0, is_present);
+  const std::string one_way =
+      watch_.LookAtWays(now, edge_id, ends_.announced.Of(Role::kEdge), echo_.deaf_rig());
   for (const std::uint64_t session : sighting.sessions_to_refuse) {
     Receipt refusal;
     refusal.session = session;
@@ -220,7 +262,7 @@ void DdsSubscriber::LookAround(SteadyTime now) {
     static_cast<void>(ends_.receipt.Write(edge_id, refusal));  // Repeated every second.
   }
   MutexLock lock(mutex_);
-  stats_.rig_problem = sighting.problem;
+  stats_.rig_problem = sighting.problem.empty() ? one_way : sighting.problem;
   if (sighting.present == stats_.edge_present) return;
   stats_.edge_present = sighting.present;
   LOG(Subscriber, Info) << (sighting.present ? "rig found" : "rig lost");
@@ -267,6 +309,8 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
     receipt.depth = depth_.receipt(*session);
     receipt.thermal = thermal_.receipt(*session);
   }
+  const bool is_new = receipt.depth.received + receipt.thermal.received < kFirstFrames;
+  frames_per_receipt_ = is_new ? 1 : kFramesPerReceipt;
   receipt.clock_ping = clock_comparison_.Ping(clock_.SteadyNow());
   const Status sent = ends_.receipt.Write(edge_id, receipt);
   if (!sent.ok()) {

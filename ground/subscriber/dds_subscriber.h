@@ -12,9 +12,11 @@
 #include "common/transport/endpoints.h"
 #include "ground/subscriber/clock_comparison.h"
 #include "ground/subscriber/clock_watch.h"
+#include "ground/subscriber/echo_watch.h"
 #include "ground/subscriber/followed_rig.h"
 #include "ground/subscriber/ground_endpoints.h"
 #include "ground/subscriber/peer_table.h"
+#include "ground/subscriber/piece_collector.h"
 #include "ground/subscriber/rig_gate.h"
 #include "ground/subscriber/rig_watch.h"
 #include "ground/subscriber/session_history.h"
@@ -49,12 +51,14 @@ class DdsSubscriber final : public Subscriber {
   /// Hands what has arrived at `reader` to the gate; samples of other rigs are only counted.
   template <typename Message>
   int TakeSamples(Reader<Message>* reader, int max_samples);
+  int TakePieces();
   /// Does what is due: deliveries, receipts, closed sessions, statistics.
   void Housekeep();
   void CloseSessions(SteadyTime now);
   /// Keeps the counters of the newest session and of the one before, as they are now.
   void KeepCounters();
   void SendReceipt(SteadyTime now);
+  void ReportPieces(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
   // What the gate lets through: the lambda that the constructor gives it calls one of these.
@@ -88,6 +92,8 @@ class DdsSubscriber final : public Subscriber {
   StreamReceiver<ReceivedDepth> depth_;
   StreamReceiver<ReceivedThermal> thermal_;
   PeerTable peers_;
+  PieceCollector pieces_{&refusals_};
+  SteadyTime piece_report_due_{};
   RigGate gate_;
   std::vector<std::pair<PeerHandle, RigSample>> descriptions_;  ///< Not yet at the gate.
   int turns_behind_frames_ = 0;  ///< For so many turns they have waited.
@@ -97,8 +103,10 @@ class DdsSubscriber final : public Subscriber {
   std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
+  EchoWatch echo_;
   SteadyTime receipt_due_{};
   int frames_since_receipt_ = 0;
+  int frames_per_receipt_ = 1;
 
   mutable Mutex mutex_;
   std::uint64_t next_command_ GUARDED_BY(mutex_);

@@ -2,7 +2,9 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
+#include "common/messages/frame_piece.h"
 #include "common/messages/messages.h"
+#include "common/transport/announced_peers.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/participant.h"
 #include "common/transport/wait_set.h"
@@ -17,6 +19,7 @@ struct GroundEndpoints {
 
   Reader<EncodedDepthFrame> depth;
   Reader<EncodedThermalFrame> thermal;
+  Reader<FramePiece> pieces;
   Reader<Backfilled<EncodedDepthFrame>> backfill_depth;
   Reader<Backfilled<EncodedThermalFrame>> backfill_thermal;
   Reader<ExternalOdometrySample> external_odometry;
@@ -26,8 +29,10 @@ struct GroundEndpoints {
   Reader<Hello> peers;
   Writer<Command> command;
   Writer<Receipt> receipt;
+  Writer<PieceReport> piece_report;
   Writer<Feedback> feedback;
   Writer<Hello> hello;
+  AnnouncedPeers announced;
   WaitSet wait_set;
 };
 

@@ -22,6 +22,7 @@ class RigRoster {
   void Update(const std::function<bool(PeerHandle)>& is_present);
 
   bool Has(const std::string& edge_id) const;
+  bool Knows(PeerHandle peer) const { return rigs_.contains(peer); }
   /// Names of the others, each once.
   std::vector<std::string> Others(const std::string& edge_id) const;
   /// Computer of a rig's process; empty = not known.

@@ -29,6 +29,35 @@ RigSighting RigWatch::Look(SteadyTime now, const std::string& edge_id, bool has_
   return sighting;
 }
 
+std::string RigWatch::LookAtWays(SteadyTime now, const std::string& edge_id,
+                                 std::map<PeerHandle, Announcement> announced,
+                                 PeerHandle deaf_rig) {
+  if (!edge_id.empty())
+    std::erase_if(announced, [&](const auto& peer) { return peer.second.name != edge_id; });
+  const std::optional<Announcement> silent =
+      ways_.Look(now, announced, [this](PeerHandle peer) { return roster_.Knows(peer); });
+  std::string problem;
+  // A rig that has been switched off is not deaf.
+  if (announced.contains(deaf_rig)) {
+    problem =
+        "THE RIG DOES NOT HEAR this computer: packets pass in one direction only (radio, a "
+        "firewall)";
+  } else if (silent) {
+    problem = fmt::format(
+        "the rig \"{}\" on \"{}\" announces itself, and nothing else of it arrives: packets pass "
+        "in one direction only (radio, a firewall)",
+        silent->name, silent->host);
+  }
+  if (problem == one_way_) return problem;
+  one_way_ = problem;
+  if (problem.empty()) {
+    LOG(Subscriber, Info) << "packets to and from the rig pass again, or it has left";
+  } else {
+    LOG(Subscriber, Warning) << problem;
+  }
+  return problem;
+}
+
 std::vector<std::uint64_t> RigWatch::LookAtRivals(SteadyTime now, const std::string& edge_id) {
   const std::vector<RigGate::Rival> before = std::exchange(rivals_, gate_.rivals());
   LogRivals(before, edge_id);

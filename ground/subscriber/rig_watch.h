@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "common/time/line_limiter.h"
 #include "common/time/time_types.h"
+#include "common/transport/announcement.h"
 #include "common/transport/endpoints.h"
+#include "common/transport/one_way_watch.h"
 #include "ground/subscriber/rig_gate.h"
 #include "ground/subscriber/rig_roster.h"
 
@@ -42,6 +45,13 @@ class RigWatch {
   /// the rig that is followed, `has_status_writer` whether anybody writes statuses.
   RigSighting Look(SteadyTime now, const std::string& edge_id, bool has_status_writer,
                    const IsPresent& is_present);
+  /// Tells what is heard of the rig `edge_id` (empty: any) and by it, after Look: `announced` are
+  /// those that announce themselves, `deaf_rig` is one that hears nothing of this ground. Returns
+  /// what the operator is told; empty: packets pass in both directions, or in none.
+  std::string LookAtWays(SteadyTime now, const std::string& edge_id,
+                         std::map<PeerHandle, Announcement> announced, PeerHandle deaf_rig);
+  /// A process has said that it is an edge of another version.
+  void AddStranger(PeerHandle peer) { ways_.OnHeard(peer); }
 
  private:
   std::vector<std::uint64_t> LookAtRivals(SteadyTime now, const std::string& edge_id);
@@ -51,6 +61,8 @@ class RigWatch {
   const RigGate& gate_;
   RigRoster roster_;
   OtherRigsNotice other_rigs_;
+  OneWayWatch ways_;
+  std::string one_way_;  ///< As told last.
   std::vector<RigGate::Rival> rivals_;
   SteadyTime rivals_due_{};
   std::uint64_t told_overflow_ = 0;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 namespace isotherm {
@@ -67,6 +68,24 @@ TEST_F(RigWatchTest, ARivalIsToldAtOnceAndThenOnceASecond) {
   EXPECT_THAT(Look().sessions_to_refuse, IsEmpty());
   Announce(kFirst, 1);
   EXPECT_THAT(Look(RigWatch::kRivalInterval).sessions_to_refuse, ElementsAre(2));
+}
+
+TEST_F(RigWatchTest, F29WhichDirectionIsDeadIsSaid) {
+  std::map<PeerHandle, Announcement> announced = {{kFirst, {Role::kEdge, "edge", "rig-1"}},
+                                                  {kSecond, {Role::kEdge, "other", "rig-2"}}};
+  const auto look = [&](Nanoseconds duration, PeerHandle deaf_rig) {
+    std::string problem;
+    for (const SteadyTime end = now_ + duration; now_ < end; now_ += 100ms)
+      problem = watch_.LookAtWays(now_, "edge", announced, deaf_rig);
+    return problem;
+  };
+  EXPECT_THAT(look(4s, 0), IsEmpty());
+  EXPECT_THAT(look(2s, 0), HasSubstr("\"edge\" on \"rig-1\" announces itself"));
+  watch_.Add(kFirst, "edge", "rig-1");
+  EXPECT_THAT(look(10s, 0), IsEmpty()) << "the other rig is not ours";
+  EXPECT_THAT(look(1s, kFirst), HasSubstr("DOES NOT HEAR"));
+  announced.erase(kFirst);
+  EXPECT_THAT(look(1s, kFirst), IsEmpty()) << "it is switched off";
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ struct SessionCounters {
   bool closed = false;  ///< The edge has, and everything has arrived or was given up.
   StreamCounters depth;
   StreamCounters thermal;
+  /// The most recorded frames that the ground lacked at once, as the rig knew.
+  std::uint64_t most_lacking = 0;
   std::uint64_t refused_samples = 0;  ///< Samples of all topics, since this process runs.
   FeedbackLatency feedback;           ///< As the edge measured it.
   std::optional<SessionClock> clock;  ///< nullopt before the first status.

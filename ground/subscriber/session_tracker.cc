@@ -59,6 +59,7 @@ void SessionTracker::OnStatus(const EdgeStatus& status, SteadyTime now) {
   entry.depth = status.depth;
   entry.thermal = status.thermal;
   entry.feedback = status.feedback;
+  entry.most_lacking = std::max(entry.most_lacking, status.spool_frames);
   entry.ended = status.scan_state == ScanState::kEnded;
 }
 
@@ -87,6 +88,7 @@ SessionCounters SessionTracker::Counters(const StreamTally& depth,
   counters.ended = entry->ended;
   counters.closed = entry->closed;
   counters.feedback = entry->feedback;
+  counters.most_lacking = entry->most_lacking;
   counters.clock = entry->clock;
   counters.depth = MakeCounters(depth, entry->depth, entry->ended);
   counters.thermal = MakeCounters(thermal, entry->thermal, entry->ended);

@@ -51,6 +51,7 @@ class SessionTracker {
     StreamStatus depth{};
     StreamStatus thermal{};
     FeedbackLatency feedback{};
+    std::uint64_t most_lacking = 0;
     std::optional<SessionClock> clock{};
     bool ended = false;
     bool closed = false;

@@ -68,16 +68,19 @@ TEST_F(SessionTrackerTest, F28WhatTheRigDroppedItselfIsKept) {
   EXPECT_TRUE(counters.thermal.dropped_by_rig.empty());
 }
 
-TEST_F(SessionTrackerTest, TheLastStatusSaysHowSoonFeedbackArrived) {
+TEST_F(SessionTrackerTest, StatusesSayHowSoonFeedbackArrivedAndHowMuchWasLacking) {
   EdgeStatus status = Status(1, ScanState::kScanning, 9, 5);
   status.feedback = {.count = 10, .p50_s = 0.05, .p99_s = 0.10};
+  status.spool_frames = 700;
   sessions_.OnStatus(status, now_);
   status.scan_state = ScanState::kEnded;
+  status.spool_frames = 0;
   status.feedback = {.count = 20, .p50_s = 0.06, .p99_s = 0.12};
   sessions_.OnStatus(status, now_);
   const SessionCounters counters = sessions_.Counters(Tally(1, 9, 9), Tally(1, 5, 5));
   EXPECT_EQ(counters.feedback.count, 20U);
   EXPECT_EQ(counters.feedback.p99_s, 0.12);
+  EXPECT_EQ(counters.most_lacking, 700U) << "what was caught up with was lacking all the same";
 }
 
 TEST_F(SessionTrackerTest, ACompleteSessionClosesAtOnceAndOnce) {

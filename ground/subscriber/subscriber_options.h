@@ -12,8 +12,10 @@ struct SubscriberOptions {
   std::string edge_id = "edge";  ///< The rig to follow; empty follows the first one seen.
   std::string ground_id = "ground";
   std::string software_version;  ///< Goes into the hello.
-  /// Frames may arrive out of order by this much; later ones are counted as late. 0..200 ms.
-  Nanoseconds reorder_window = std::chrono::milliseconds(200);
+  /// Frames may arrive out of order by this much; later ones are counted as late. 0..200 ms. The
+  /// middleware keeps the order of what a rig sends: what is missing before a frame was left out,
+  /// and is not waited for.
+  Nanoseconds reorder_window{};
   /// A receipt goes out this often, and after every eighth frame.
   Nanoseconds receipt_interval = std::chrono::milliseconds(200);
   /// After the edge has ended its session, missing frames are given up when nothing has come for

@@ -65,6 +65,8 @@ class EdgeSide {
     PublisherOptions options;
     options.edge_id = "test-edge";
     options.policy = plan.policy;
+    // What is sent is compared with what arrives, and nothing of pieces is sent again.
+    options.pieces = false;
     publisher_ = std::move(*Publisher::Create(*participant_, clock, options));
     receiver_ = std::jthread(
         [this, handlers](const std::stop_token& stop) { publisher_->Run(stop, handlers); });

@@ -170,8 +170,12 @@ class EdgeLink final : public IdlePublisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token) override {
     return SendLive(frame);
   }
-  Result<bool> Backfill(const EncodedDepthFrame& frame) override { return SendAgain(frame); }
-  Result<bool> Backfill(const EncodedThermalFrame& frame) override { return SendAgain(frame); }
+  Result<bool> Backfill(const EncodedDepthFrame& frame, int, const std::stop_token&) override {
+    return SendAgain(frame);
+  }
+  Result<bool> Backfill(const EncodedThermalFrame& frame, int, const std::stop_token&) override {
+    return SendAgain(frame);
+  }
   PublisherStats stats() const override {
     PublisherStats stats;
     stats.depth = streams_[0].counts();

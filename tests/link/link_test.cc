@@ -173,7 +173,7 @@ TEST_F(LinkTest, WhatTheGroundLacksComesOnAWayOfItsOwnAndIsConfirmed) {
   EXPECT_EQ(publisher.stats().depth.published, 20U);
   for (std::uint64_t number = 10; number < 15; ++number) {
     const auto depth =
-        publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session, number, 64, 48));
+        publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session, number, 64, 48), 0, {});
     ASSERT_TRUE(depth) << depth.error().message();
     EXPECT_TRUE(*depth) << "it had not been published before";
   }
@@ -184,8 +184,9 @@ TEST_F(LinkTest, WhatTheGroundLacksComesOnAWayOfItsOwnAndIsConfirmed) {
     return receipt.depth.received == 25 && receipt.depth.holes.empty();
   }));
   // Once more: it was lost on the way, for all that the edge knows.
-  EXPECT_FALSE(*publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session, 10, 64, 48)));
-  EXPECT_FALSE(publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session + 1, 10, 64, 48)))
+  EXPECT_FALSE(*publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session, 10, 64, 48), 0, {}));
+  EXPECT_FALSE(
+      publisher.Backfill(MakeFrame<EncodedDepthFrame>(plan.session + 1, 10, 64, 48), 0, {}))
       << "of another session";
   EXPECT_TRUE(edge.End());
   const auto counters = ground->AwaitSessionEnd();

@@ -1,12 +1,15 @@
 // isotherm fetch, from a rig that has scanned: over the link, broken off and gone on with.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/testing/temporary_directory.h"
 #include "tests/support/programs.h"
@@ -52,6 +55,7 @@ class FetchTest : public ::testing::Test {
     std::filesystem::path only;
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(recordings_.path())) {
+      if (entry.path().extension() != ".mcap") continue;  // A note that it was fetched.
       only = entry.path();
       ++files;
     }
@@ -121,8 +125,9 @@ TEST_F(FetchTest, AGroundThatIsGoneAndLacksFramesKeepsNothingBack) {
   arguments.insert(arguments.end(), quick.begin(), quick.end());
   Process ground({GroundService(), arguments, {}});
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
-  Process edge(Edge(3, {"--set", "link.wait_for_ground=true"}));
-  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output();
+  Process edge(Edge(4, {"--set", "link.wait_for_ground=true"}));
+  // By its feedback the edge has heard the ground: only of such a one it knows what it lacks.
+  ASSERT_TRUE(edge.WaitForOutput("view 0 % good", kPatience)) << edge.output();
   ground.Signal(SIGKILL);
   ASSERT_TRUE(edge.WaitForOutput("the recording is closed", kPatience)) << edge.output();
   EXPECT_THAT(edge.output(), Not(HasSubstr("waiting for the order to start")))
@@ -138,6 +143,33 @@ TEST_F(FetchTest, ARigThatGivesNothingAwayIsNotWaitedForForEver) {
   const Finished list = RunToEnd(Fetch({}), kPatience);
   EXPECT_EQ(list.status, 69) << list.output;
   EXPECT_THAT(list.output, HasSubstr("has not answered"));
+}
+
+TEST_F(FetchTest, F41WhatWasFetchedMakesRoom) {
+  std::vector<std::filesystem::path> recordings;
+  const auto record = [&](int seconds, const std::vector<std::string>& more, bool fetches) {
+    Process edge(Edge(seconds, more));
+    ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start", kPatience)) << edge.output();
+    EXPECT_THAT(edge.output(), Not(HasSubstr("NOT RECORDING")));
+    for (const auto& entry : std::filesystem::directory_iterator(recordings_.path())) {
+      const bool is_new = std::ranges::find(recordings, entry.path()) == recordings.end();
+      if (is_new && entry.path().extension() == ".mcap") recordings.push_back(entry.path());
+    }
+    if (!fetches) return;
+    EXPECT_EQ(RunToEnd(Fetch({"--newest"}), kPatience).status, 0);
+  };
+  ASSERT_NO_FATAL_FAILURE(record(1, {}, false));
+  ASSERT_NO_FATAL_FAILURE(record(4, {}, true));
+  ASSERT_EQ(recordings.size(), 2U);
+  // Room for these two and a second more.
+  const auto size = static_cast<double>(std::filesystem::file_size(recordings[1]));
+  const std::string quota = fmt::format("spool.quota_gb={}", 1.6e-9 * size);
+  ASSERT_NO_FATAL_FAILURE(
+      record(4, {"--set", "spool.when_full=DELETE_FETCHED", "--set", quota}, false));
+  ASSERT_EQ(recordings.size(), 3U) << "one file, and no part of it";
+  EXPECT_TRUE(std::filesystem::exists(recordings[0])) << "nobody has fetched it";
+  EXPECT_FALSE(std::filesystem::exists(recordings[1]));
+  EXPECT_TRUE(Get(here_ / recordings[1].filename()).size() == static_cast<std::size_t>(size));
 }
 
 }  // namespace

@@ -136,6 +136,20 @@ TEST_F(LinkOutageTest, F32F35AGroundThatComesLateAndOneThatIsStartedAgainGetTheW
   ExpectNothingIsLost(outcome);
 }
 
+TEST_F(LinkOutageTest, F30AChangedAddressOfTheRigCostsNoFrame) {
+  // Frames of the time between are left for later, of which the new link has to know.
+  ASSERT_NO_FATAL_FAILURE(Start(25, {"--set", "link.policy=LIVE"}));
+  ASSERT_TRUE(In(edge_, {"addr", "flush", "dev", edge_.interface}));
+  ASSERT_TRUE(In(edge_, {"addr", "add", "192.168.50.77/24", "dev", edge_.interface}));
+  ASSERT_TRUE(edge().WaitForOutput("joining the network anew", kPatience)) << Said();
+  ASSERT_TRUE(edge().WaitForOutput("ground station found", kPatience, 2)) << Said();
+  EXPECT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
+  EXPECT_FALSE(edge().HasEnded(Seconds(0))) << "the scan was too short";
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+}
+
 TEST_F(LinkOutageTest, F27ATenthOfAllPacketsLostOnALocalNetworkCostsNoFrame) {
   if (!Lose(ground_, 0.1) || !Lose(edge_, 0.1)) GTEST_SKIP() << "this kernel loses no packets";
   ASSERT_NO_FATAL_FAILURE(Start(6));
@@ -164,6 +178,19 @@ TEST_F(LinkOutageTest, F28WhatANarrowLinkCannotCarryComesLater) {
   const Outcome outcome = EndCompleted();
   ExpectEachFrameAccountedFor(outcome);
   ExpectNothingIsLost(outcome);
+}
+
+TEST_F(LinkOutageTest, F28LiveFramesThatANarrowLinkCannotCarryAreLeftForLater) {
+  WriteScan(3);  // Frames of several packets.
+  ASSERT_NO_FATAL_FAILURE(Start(16, {"--set", "link.policy=LIVE"}));
+  // A third of what it takes.
+  if (!Narrow(edge_, "3500kbit")) GTEST_SKIP() << "this kernel limits no rate";
+  EXPECT_TRUE(HasMore(copy_, Seconds(11))) << Said();
+  Widen(edge_);
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+  EXPECT_THAT(Said(), ::testing::HasSubstr("link too narrow"));
 }
 
 TEST_F(LinkOutageTest, F28WithoutBackfillWhatANarrowLinkCannotCarryIsDroppedByTheRigAndCounted) {

@@ -15,6 +15,7 @@
 #include "common/options/override.h"
 #include "common/options/text_proto.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/true_surface.h"
 #include "ground/cli/model_export.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/evaluation/ply_reader.h"

@@ -38,6 +38,28 @@ inline RecordingPiece Good() {
           .crc = 9};
 }
 template <>
+inline FramePiece Good() {
+  FramePiece piece{.session = 7,
+                   .sensor = Sensor::kThermal,
+                   .frame_number = 3,
+                   .sent = std::chrono::seconds(5),
+                   .order = 1'000,
+                   .frame_bytes = 80'000,
+                   .frame_crc = 0xCBF43926,
+                   .index = 12};
+  piece.bytes.assign(kMinFramePieceBytes, 0x5A);
+  return piece;
+}
+template <>
+inline PieceReport Good() {
+  return {.session = 7,
+          .next_order = 1'000,
+          .received = 990,
+          .frames = 12,
+          .broken = 1,
+          .queued = std::chrono::milliseconds(20)};
+}
+template <>
 inline EncodedDepthFrame Good() {
   auto frame = GoodFrame<EncodedDepthFrame>();
   frame.depth_scale = 1000.0;

@@ -55,6 +55,23 @@ class JoinedEndsTest : public ::testing::Test {
     return result;
   }
 
+  /// Writes `message` and returns what arrives at the other side.
+  template <typename Message>
+  std::optional<Received<Message>> RoundTrip(const Message& message) {
+    Reader<Message> reader;
+    EXPECT_TRUE(reader.Open(*ground_, &refusals_).ok());
+    Writer<Message> writer;
+    EXPECT_TRUE(writer.Open(*edge_).ok());
+    AwaitMatch(writer, 1);
+    // The other side, too: nobody sends again what is written with best effort.
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (reader.matched_writers() < 1 && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+    }
+    EXPECT_TRUE(writer.Write("edge-1", message).ok());
+    return TakeOne(reader);
+  }
+
   SystemClock clock_;
   TransportEnvironment environment_{clock_};
   TestDomain domain_;

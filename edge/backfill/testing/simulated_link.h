@@ -64,6 +64,7 @@ class SimulatedLink final : public IdlePublisher {
   // What the test sets.
   bool carries = true;
   bool ground_is_there = true;
+  bool leaves_frames = false;  // The link is too narrow for all of them.
   double loss = 0.0;
   Nanoseconds delay = std::chrono::milliseconds(5);
   std::optional<std::uint64_t> refused;  // A number that the ground never takes, of both streams.
@@ -71,10 +72,10 @@ class SimulatedLink final : public IdlePublisher {
   std::uint64_t duplicates = 0;
   std::uint64_t backfilled = 0;
 
-  Result<bool> Backfill(const EncodedDepthFrame& frame) override {
+  Result<bool> Backfill(const EncodedDepthFrame& frame, int, const std::stop_token&) override {
     return SendAgain(Sensor::kDepth, frame.header);
   }
-  Result<bool> Backfill(const EncodedThermalFrame& frame) override {
+  Result<bool> Backfill(const EncodedThermalFrame& frame, int, const std::stop_token&) override {
     return SendAgain(Sensor::kThermal, frame.header);
   }
   PublisherStats stats() const override {
@@ -86,6 +87,7 @@ class SimulatedLink final : public IdlePublisher {
     const bool is_noticed =
         !receipt_ || clock_.SteadyNow() - receipt_at_ > std::chrono::seconds(10);
     stats.ground_present = stats.takes_backfill = (carries && ground_is_there) || !is_noticed;
+    stats.leaves_frames = leaves_frames;
     return stats;
   }
   std::optional<Receipt> receipt() const override { return receipt_; }

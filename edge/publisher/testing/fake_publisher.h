@@ -36,14 +36,21 @@ class FakePublisher final : public Publisher {
     announced_.push_back(rig);
     return OkStatus();
   }
+  bool TakesNext(Sensor sensor, std::size_t /*newer*/) override {
+    return !leaves_all_of || *leaves_all_of != sensor;
+  }
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
     return Take(frame, &depth_, stop);
   }
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return Take(frame, &thermal_, stop);
   }
-  Result<bool> Backfill(const EncodedDepthFrame&) override { return false; }
-  Result<bool> Backfill(const EncodedThermalFrame&) override { return false; }
+  Result<bool> Backfill(const EncodedDepthFrame&, int, const std::stop_token&) override {
+    return false;
+  }
+  Result<bool> Backfill(const EncodedThermalFrame&, int, const std::stop_token&) override {
+    return false;
+  }
   Status Publish(const ExternalOdometrySample& sample, std::stop_token) override {
     MutexLock lock(mutex_);
     if (broken_) return Unavailable("no link");
@@ -69,7 +76,10 @@ class FakePublisher final : public Publisher {
     return stats;
   }
   std::optional<Receipt> receipt() const override { return std::nullopt; }
+  SessionBefore so_far() const override { return {}; }
 
+  /// Frames of this camera are left for later.
+  std::optional<Sensor> leaves_all_of;
   /// Commands and feedback, with its arrival, that the ground sends at the start of Run.
   std::vector<Command> commands;
   std::vector<std::pair<Feedback, CaptureTime>> feedback;

@@ -13,6 +13,7 @@ class IdlePublisher : public Publisher {
   bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
   Status BeginSession(const RigDescription&, const SessionBefore&) override { return OkStatus(); }
   Status Announce(const RigDescription&) override { return OkStatus(); }
+  bool TakesNext(Sensor, std::size_t) override { return true; }
   Status Publish(const EncodedDepthFrame&, std::stop_token) override { return OkStatus(); }
   Status Publish(const EncodedThermalFrame&, std::stop_token) override { return OkStatus(); }
   Status Publish(const ExternalOdometrySample&, std::stop_token) override { return OkStatus(); }
@@ -20,6 +21,7 @@ class IdlePublisher : public Publisher {
   Status Answer(const CommandResult&) override { return OkStatus(); }
   bool Drain(Nanoseconds) override { return true; }
   void SetPolicy(PublishPolicy) override {}
+  SessionBefore so_far() const override { return {}; }
 };
 
 }  // namespace isotherm

@@ -1,4 +1,4 @@
-#include "ground/cli/child_process.h"
+#include "common/base/child_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

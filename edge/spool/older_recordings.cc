@@ -1,0 +1,107 @@
+#include "edge/spool/older_recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "common/base/log.h"
+#include "common/recording/recording_parts.h"
+#include "edge/spool/recording_listing.h"
+
+namespace isotherm {
+namespace {
+
+std::filesystem::path MarkOf(const std::filesystem::path& file) {
+  return file.string() + ".fetched";
+}
+
+/// Returns how many bytes a file has; 0 if nobody can tell.
+std::uint64_t SizeOf(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  return error ? 0 : size;
+}
+
+/// Returns the recordings that may be deleted, each as its files, the one that was written first
+/// first.
+std::vector<std::vector<ListedRecording>> FetchedOf(const std::filesystem::path& record,
+                                                    const std::filesystem::path& present) {
+  std::vector<std::vector<ListedRecording>> recordings;
+  for (ListedRecording& file : ListRecordings(record)) {
+    if (file.first.filename() == present.filename()) continue;
+    const auto known = std::ranges::find_if(
+        recordings, [&file](const auto& files) { return files.front().first == file.first; });
+    if (known == recordings.end()) {
+      recordings.push_back({std::move(file)});
+    } else {
+      known->push_back(std::move(file));
+    }
+  }
+  std::erase_if(recordings, [](const std::vector<ListedRecording>& files) {
+    return !std::ranges::all_of(files, [](const ListedRecording& file) {
+      return IsFetched(file.path) && !IsBeingWritten(file.path);
+    });
+  });
+  std::ranges::reverse(recordings);
+  return recordings;
+}
+
+}  // namespace
+
+Status MarkFetched(const std::filesystem::path& file, std::uint64_t size) {
+  if (size == 0 || SizeOf(file) != size) {
+    return NotFound(fmt::format("there is no {} of {} bytes", file.filename().string(), size));
+  }
+  const std::filesystem::path mark = MarkOf(file);
+  std::ofstream out(mark, std::ios::trunc);
+  // The size, so that a file that is completed later counts as another one.
+  out << size << '\n';
+  out.close();
+  return out ? OkStatus() : IoError(fmt::format("cannot write {}", mark.string()));
+}
+
+bool IsFetched(const std::filesystem::path& file) {
+  std::ifstream in(MarkOf(file));
+  std::uint64_t size = 0;
+  return (in >> size) && size > 0 && size == SizeOf(file);
+}
+
+std::uint64_t RecordingsSize(const std::filesystem::path& record) {
+  std::uint64_t bytes = 0;
+  for (const ListedRecording& file : ListRecordings(record)) bytes += SizeOf(file.path);
+  return bytes;
+}
+
+std::uint64_t FetchedSize(const std::filesystem::path& record,
+                          const std::filesystem::path& present) {
+  std::uint64_t bytes = 0;
+  for (const std::vector<ListedRecording>& files : FetchedOf(record, present))
+    for (const ListedRecording& file : files) bytes += SizeOf(file.path);
+  return bytes;
+}
+
+std::optional<DeletedRecording> DeleteOldestFetched(const std::filesystem::path& record,
+                                                    const std::filesystem::path& present) {
+  for (const std::vector<ListedRecording>& files : FetchedOf(record, present)) {
+    DeletedRecording deleted{.name = files.front().first.filename().string()};
+    for (const ListedRecording& file : files) {
+      const std::uint64_t bytes = SizeOf(file.path);
+      std::error_code error;
+      std::filesystem::remove(file.path, error);
+      if (error) {
+        LOG(Spool, Debug) << "cannot delete " << file.path.string() << ": " << error.message();
+        continue;
+      }
+      std::filesystem::remove(MarkOf(file.path), error);
+      deleted.bytes += bytes;
+    }
+    if (deleted.bytes > 0) return deleted;
+  }
+  return std::nullopt;
+}
+
+}  // namespace isotherm
