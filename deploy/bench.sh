@@ -5,15 +5,19 @@
 #   deploy/bench.sh SCAN            also `isotherm reconstruct` and Open3D on a recording (.mcap) or a dataset folder
 #   deploy/bench.sh SCAN "X Y Z"    the same in a volume with this corner, metres in the world of the scan's ground
 #                                   truth, which then gives the first pose
+#   deploy/bench.sh --plots         only what a frame costs against each thing that it may grow with, drawn into docs/images
+#                                   (takes gnuplot: deploy/install-deps.sh --images), a quarter of an hour
 #
 # A table is a measurement only on a machine that does nothing else: it says how busy the machine was before, and which
 # fraction of the cores others took meanwhile. Codecs are measured on the data in $ISOTHERM_DATA_DIR (or ../shared/data).
 # All that the programs said is kept in build/release/bench.
 set -eu
 
+plots=0
 case "${1-}" in
-  -h | --help) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
-  -*) echo "usage: deploy/bench.sh [SCAN [\"X Y Z\"]]" >&2; exit 64 ;;
+  -h | --help) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  --plots) plots=1; shift; [ $# = 0 ] || { echo "bench: --plots takes no scan" >&2; exit 64; } ;;
+  -*) echo "usage: deploy/bench.sh [--plots | SCAN [\"X Y Z\"]]" >&2; exit 64 ;;
 esac
 scan=${1-}
 volume_min=${2-}
@@ -30,7 +34,10 @@ say() { printf '== %s\n' "$*" >&2; }
 say "build (release)"
 cmake --preset release >/dev/null
 targets="codec_benchmark kernel_benchmark pipeline_benchmark growth_benchmark isotherm"
-if cmake --build "$build" --target help | grep -q '^open3d_benchmark:'; then
+[ "$plots" = 0 ] || targets=cost_benchmark
+if [ "$plots" = 1 ]; then
+  command -v gnuplot >/dev/null || { echo "bench: gnuplot is not installed: deploy/install-deps.sh --images" >&2; exit 69; }
+elif cmake --build "$build" --target help | grep -q '^open3d_benchmark:'; then
   targets="$targets open3d_benchmark"
 else
   echo "Open3D is not installed (libopen3d-dev): left out" >&2
@@ -101,10 +108,14 @@ run_reconstruct() {
 }
 
 : >"$out/results.tsv"
-run_benchmark codec_benchmark tests/benchmark '--benchmark_filter=/(isotherm|png_1)/'
-run_benchmark kernel_benchmark tests/benchmark --benchmark_enable_random_interleaving=true
-run_benchmark pipeline_benchmark tests/benchmark '--benchmark_filter=voxel_mm:2/'
-run_benchmark growth_benchmark tests/benchmark
+if [ "$plots" = 1 ]; then
+  run_benchmark cost_benchmark tests/benchmark
+else
+  run_benchmark codec_benchmark tests/benchmark '--benchmark_filter=/(isotherm|png_1)/'
+  run_benchmark kernel_benchmark tests/benchmark --benchmark_enable_random_interleaving=true
+  run_benchmark pipeline_benchmark tests/benchmark '--benchmark_filter=voxel_mm:2/'
+  run_benchmark growth_benchmark tests/benchmark
+fi
 [ -z "$scan" ] || run_reconstruct
 case "$targets" in
   *open3d*) run_open3d ${scan:+"$scan"} ${volume_min:+--volume-min "$volume_min"} ;;
@@ -115,19 +126,31 @@ own_s >"$out/own_after.txt"
 others=$(awk -v all="$(busy_s)" -v before="$busy_before" -v own="$(cat "$out/own_after.txt")" \
   -v own_before="$(cat "$out/own_before.txt")" -v s="$seconds" -v cores="$cores" \
   'BEGIN { fraction = 100 * (all - before - own + own_before) / (s * cores); printf "%.0f", (fraction > 0 ? fraction : 0) }')
-simd=$(sed -n 's/.*"machine": ".*SIMD \([A-Z0-9_]*\)".*/\1/p' "$out/kernel_benchmark.json")
+simd=
+[ "$plots" = 1 ] || simd=$(sed -n 's/.*"machine": ".*SIMD \([A-Z0-9_]*\)".*/\1/p' "$out/kernel_benchmark.json")
 cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
 
 cat <<TEXT
 
-$(date -u +%Y-%m-%d), commit $commit, ${cpu:-$(uname -m)}, $cores cores, SIMD $simd
+$(date -u +%Y-%m-%d), commit $commit, ${cpu:-$(uname -m)}, $cores cores${simd:+, SIMD $simd}
 load average before $load_before, after $(cut -d' ' -f1-3 /proc/loadavg); others took $others % of the cores meanwhile
 
 TEXT
-awk -v simd="$simd" -f deploy/bench_table.awk "$out/results.tsv"
+if [ "$plots" = 1 ]; then
+  cat "$out/cost_benchmark.txt"
+else
+  awk -v simd="$simd" -f deploy/bench_table.awk "$out/results.tsv"
+fi
 
 # Above this the figures tell more about the others.
 if [ "$others" -gt 5 ]; then
   printf '\nBUSY: others took %s %% of the cores; do not take these figures for the machine'"'"'s.\n' "$others"
+fi
+if [ "$plots" = 1 ]; then
+  if [ "$others" -gt 5 ]; then
+    echo "docs/images stays as it was; to draw them all the same: deploy/plot_cost.sh $out/results.tsv FOLDER"
+  else
+    deploy/plot_cost.sh "$out/results.tsv" docs/images
+  fi
 fi
