@@ -35,6 +35,8 @@ inline constexpr std::size_t kMaxFramePixels = 1U << 22;   ///< One frame: 2048 
 inline constexpr std::size_t kMaxHoles = 64;               ///< Ranges in one receipt.
 inline constexpr std::size_t kMaxDropReasons = 16;
 inline constexpr std::size_t kMaxAdvice = 8;
+inline constexpr std::size_t kMaxMarks = 8;        ///< In one status.
+inline constexpr std::size_t kMaxMarkBytes = 128;  ///< A mark says no more.
 inline constexpr std::size_t kMaxStageLatencies = 16;
 inline constexpr std::size_t kMaxConfidenceImageBytes = 20'000;  ///< Confidence image.
 
@@ -200,6 +202,13 @@ struct ClockEcho {
   CaptureTime sent{};
 };
 
+/// A moment of the scan that somebody wants to find again, in words.
+struct ScanMark {
+  CaptureTime time{};  ///< The capture time of the newest frame.
+  std::string text{};  ///< At most kMaxMarkBytes.
+  friend bool operator==(const ScanMark&, const ScanMark&) = default;
+};
+
 /// State of the edge at 1 Hz and at each change of scan_state; the last one is kept for late
 /// joiners. NaN = not known.
 struct EdgeStatus {
@@ -219,6 +228,9 @@ struct EdgeStatus {
   FeedbackLatency feedback;  ///< Feedback in this session.
   CameraReport depth_camera;
   CameraReport thermal_camera;
+  std::vector<ScanMark> marks{};  ///< The newest kMaxMarks of this session.
+  /// Process (PeerHandle) of the ground station whose receipts count; 0: none yet.
+  std::uint64_t served_ground = 0;
 };
 
 /// Names what the ground can order.
@@ -229,6 +241,7 @@ enum class CommandKind : std::uint8_t {
   kSetNucPolicy = 3,
   kSetPublishPolicy = 4,
   kHoldNuc = 5,  ///< No corrections for a while.
+  kMark = 6,     ///< Remember this moment of the scan.
 };
 
 /// An order from the ground. Every command is answered by a CommandResult with the same number.
@@ -239,6 +252,7 @@ struct Command {
   NucPolicy nuc_policy = NucPolicy::kAutomatic;         ///< For kSetNucPolicy.
   PublishPolicy publish_policy = PublishPolicy::kLive;  ///< For kSetPublishPolicy.
   double hold_s = 0.0;                                  ///< For kHoldNuc; 0 ends a hold.
+  std::string text{};                                   ///< For kMark; at most kMaxMarkBytes.
 };
 
 /// Says what became of a command. What is kRefused was not done; what is kFailed was tried, and may

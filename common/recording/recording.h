@@ -111,6 +111,8 @@ struct RecordedPose {
   std::string stream;
   StampedPose pose;
 };
+/// Begins the text of a RecordedLog that marks a moment; what somebody called it follows.
+inline constexpr const char* kMarkPrefix = "mark: ";
 /// A sentence about something that happened during the scan.
 struct RecordedLog {
   CaptureTime time{};

@@ -107,11 +107,12 @@ void ToWire(const Command& from, isotherm_wire_Command* to) {
   to->nuc_policy = static_cast<std::uint8_t>(from.nuc_policy);
   to->publish_policy = static_cast<std::uint8_t>(from.publish_policy);
   to->hold_s = from.hold_s;
+  CopyText(from.text, to->mark_text);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Command& from, Command* to) {
   if (from.time_ns < 0) return RefusalCause::kNegativeTime;
-  if (const auto cause = CheckEnum(from.kind, CommandKind::kHoldNuc)) return cause;
+  if (const auto cause = CheckEnum(from.kind, CommandKind::kMark)) return cause;
   if (const auto cause = CheckEnum(from.nuc_policy, NucPolicy::kCamera)) return cause;
   if (const auto cause = CheckFinite({from.hold_s})) return cause;
   if (const auto cause = CheckEnum(from.publish_policy, PublishPolicy::kLossless)) return cause;
@@ -120,7 +121,8 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Command& from, Command*
          .kind = static_cast<CommandKind>(from.kind),
          .nuc_policy = static_cast<NucPolicy>(from.nuc_policy),
          .publish_policy = static_cast<PublishPolicy>(from.publish_policy),
-         .hold_s = from.hold_s};
+         .hold_s = from.hold_s,
+         .text = ReadText(from.mark_text)};
   return std::nullopt;
 }
 

@@ -147,6 +147,24 @@ std::optional<RefusalCause> FromWireNuc(const isotherm_wire_EdgeStatus& from, Nu
   return std::nullopt;
 }
 
+void ToWireMarks(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
+  const std::size_t skipped = from.marks.size() - std::min(from.marks.size(), kMaxMarks);
+  const auto marks = Allocate(&to->scan_marks, from.marks.size(), kMaxMarks);
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    const ScanMark& mark = from.marks[skipped + i];  // The newest: the others were sent before.
+    marks[i].time_ns = ToNanoseconds(mark.time);
+    CopyText(mark.text, marks[i].text);
+  }
+}
+
+std::optional<RefusalCause> FromWireMarks(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
+  for (const auto& mark : Elements(from.scan_marks)) {
+    if (mark.time_ns < 0) return RefusalCause::kNegativeTime;
+    to->marks.push_back({CaptureTimeFromNanoseconds(mark.time_ns), ReadText(mark.text)});
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
@@ -167,6 +185,8 @@ void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
   to->feedback_latency_p99_s = from.feedback.p99_s;
   ToWireCamera(from.depth_camera, &to->depth_camera);
   ToWireCamera(from.thermal_camera, &to->thermal_camera);
+  ToWireMarks(from, to);
+  to->served_ground = from.served_ground;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
@@ -184,7 +204,9 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (const auto cause = FromWireStream(from.thermal, &to->thermal)) return cause;
   if (const auto cause = FromWireCamera(from.depth_camera, &to->depth_camera)) return cause;
   if (const auto cause = FromWireCamera(from.thermal_camera, &to->thermal_camera)) return cause;
+  if (const auto cause = FromWireMarks(from, to)) return cause;
   to->session = from.session;
+  to->served_ground = from.served_ground;
   to->time = CaptureTimeFromNanoseconds(from.time_ns);
   to->scan_state = static_cast<ScanState>(from.scan_state);
   to->publish_policy = static_cast<PublishPolicy>(from.publish_policy);

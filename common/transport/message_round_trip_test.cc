@@ -1,4 +1,5 @@
 // Each message arrives at the other side as it was written.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -210,6 +211,9 @@ TEST_F(MessageRoundTripTest, StatusArrivesWithItsDropReasons) {
               .warming_up = true,
               .housing_celsius = 31.5,
               .reason = "drift"};
+  for (std::int64_t i = 0; i < 10; ++i)
+    sent.marks.push_back({CaptureTimeFromNanoseconds(i), fmt::format("place {}", i)});
+  sent.served_ground = 0xFEDCBA9876543210;
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const EdgeStatus& status = received->message;
@@ -240,6 +244,10 @@ TEST_F(MessageRoundTripTest, StatusArrivesWithItsDropReasons) {
   EXPECT_TRUE(std::isnan(status.nuc.fpa_celsius));
   EXPECT_EQ(status.nuc.housing_celsius, 31.5);
   EXPECT_EQ(status.nuc.reason, "drift");
+  EXPECT_EQ(status.served_ground, sent.served_ground);
+  ASSERT_EQ(status.marks.size(), kMaxMarks);
+  EXPECT_EQ(status.marks.front(), sent.marks[2]) << "the oldest were sent before";
+  EXPECT_EQ(status.marks.back(), sent.marks[9]);
 }
 
 TEST_F(MessageRoundTripTest, CommandAndItsResultArrive) {
@@ -253,6 +261,10 @@ TEST_F(MessageRoundTripTest, CommandAndItsResultArrive) {
   ASSERT_TRUE(hold.has_value());
   EXPECT_EQ(hold->message.kind, CommandKind::kHoldNuc);
   EXPECT_EQ(hold->message.hold_s, 12.5);
+  const auto mark = RoundTrip(Command{.kind = CommandKind::kMark, .text = "left burner"});
+  ASSERT_TRUE(mark.has_value());
+  EXPECT_EQ(mark->message.kind, CommandKind::kMark);
+  EXPECT_EQ(mark->message.text, "left burner");
   const auto result = RoundTrip(
       CommandResult{.number = 3, .outcome = CommandOutcome::kRefused, .text = "scan is running"});
   ASSERT_TRUE(result.has_value());

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "common/base/check.h"
+#include "common/transport/peer_guid.h"
 #include "common/transport/qos.h"
 
 namespace isotherm {
@@ -51,6 +53,12 @@ Result<std::unique_ptr<Participant>> Participant::Create(
                     domain_id, ReasonOf(environment, handle.value()))));
   }
   return std::unique_ptr<Participant>(new Participant(std::move(handle)));
+}
+
+std::uint64_t Participant::peer() const {
+  dds_guid_t guid{};
+  CHECK(dds_get_guid(handle_.value(), &guid) == DDS_RETCODE_OK);
+  return PeerOfGuid(guid);
 }
 
 }  // namespace isotherm

@@ -39,6 +39,8 @@ class Participant {
       const TransportEnvironment& environment, int domain_id,
       const std::optional<Announcement>& announcement = std::nullopt);
   std::int32_t handle() const { return handle_.value(); }
+  /// Returns how the others of the domain know this process (a PeerHandle).
+  std::uint64_t peer() const;
 
  private:
   explicit Participant(DdsHandle handle) : handle_(std::move(handle)) {}

@@ -165,11 +165,15 @@ bool IsSound(const EdgeStatus& status) {
          IsOneOf(status.nuc.state, 8) && IsOneOf(status.nuc.source, 5) &&
          IsOneOf(status.nuc.policy, 3) && IsOneOf(status.depth_camera.state, 4) &&
          status.depth.dropped.size() <= 16 && std::isfinite(status.thermal.rate_hz) &&
-         IsShort(status.nuc.reason, 256);
+         IsShort(status.nuc.reason, 256) && status.marks.size() <= kMaxMarks &&
+         std::ranges::all_of(status.marks, [](const ScanMark& mark) {
+           return IsShort(mark.text, kMaxMarkBytes) && ToNanoseconds(mark.time) >= 0;
+         });
 }
 bool IsSound(const Command& command) {
-  return IsOneOf(command.kind, 6) && IsOneOf(command.nuc_policy, 3) &&
-         IsOneOf(command.publish_policy, 2) && std::isfinite(command.hold_s);
+  return IsOneOf(command.kind, 7) && IsOneOf(command.nuc_policy, 3) &&
+         IsOneOf(command.publish_policy, 2) && std::isfinite(command.hold_s) &&
+         IsShort(command.text, kMaxMarkBytes);
 }
 bool IsSound(const CommandResult& result) {
   return IsOneOf(result.outcome, 3) && IsShort(result.text, 256);

@@ -95,6 +95,7 @@ EdgeStatus EdgeMonitor::MakeStatus(ScanState scan_state, SteadyTime now) {
   if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
     status.disk_free_bytes = ToReport(recording->free_bytes);
   }
+  status.marks = pipeline_.marks();
   status.clock.steps = pipeline_.clock_steps();
   status.clock.step_sum_s = ToSeconds(pipeline_.clock_step_total());
   return status;

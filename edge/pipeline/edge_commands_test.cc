@@ -57,6 +57,62 @@ TEST_F(EdgeCommandsTest, OrdersOfScansAreLeftToWhoRunsThem) {
   EXPECT_EQ(publisher_.answers().size(), 1U);
 }
 
+TEST_F(EdgeCommandsTest, AMarkIsRecordedAtTheTimeOfTheNewestFrame) {
+  publisher_.commands = {{.number = 1, .kind = CommandKind::kMark, .text = "left burner"},
+                         {.number = 2, .kind = CommandKind::kMark}};
+  publisher_.Hold();  // The source waits for room, and does not end.
+  Start("1000*t");
+  while (counters_.Get(Sensor::kThermal).captured < 3) std::this_thread::yield();
+  const auto answers = AwaitAnswers(2);
+  EXPECT_EQ(Find(answers, 1).outcome, CommandOutcome::kDone) << Find(answers, 1).text;
+  EXPECT_EQ(Find(answers, 2).outcome, CommandOutcome::kRefused);
+  EXPECT_EQ(Find(answers, 2).text, "a mark needs a text");
+  const std::vector<ScanMark> marks = pipeline_->marks();
+  ASSERT_EQ(marks.size(), 1U);
+  EXPECT_EQ(marks[0].text, "left burner");
+  publisher_.Release();
+  const auto is_its_frame_sent = [&] {
+    return std::ranges::any_of(publisher_.thermal(), [&](const EncodedThermalFrame& frame) {
+      return frame.header.capture_time == marks[0].time;
+    });
+  };
+  while (!is_its_frame_sent()) std::this_thread::yield();  // The test's time limit is the bound.
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  EXPECT_EQ(std::ranges::count_if(recording_.log,
+                                  [&](const RecordedLog& line) {
+                                    return line.text == "mark: left burner" &&
+                                           line.time == marks[0].time;
+                                  }),
+            1);
+}
+
+TEST_F(EdgeCommandsTest, AMarkThatIsNoUtf8IsMadeReadable) {
+  publisher_.commands = {{.number = 1,
+                          .kind = CommandKind::kMark,
+                          .text = "Br\xfc"
+                                  "cke"}};
+  Start("1000000*t", false);
+  while (counters_.Get(Sensor::kThermal).captured < 3) std::this_thread::yield();
+  EXPECT_EQ(AwaitAnswers(1)[0].outcome, CommandOutcome::kDone);
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  ASSERT_EQ(pipeline_->marks().size(), 1U);
+  EXPECT_EQ(pipeline_->marks()[0].text, "Br\\xfccke");
+}
+
+TEST_F(EdgeCommandsTest, TheNewestMarksAreTold) {
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    publisher_.commands.push_back(
+        {.number = i, .kind = CommandKind::kMark, .text = std::to_string(i)});
+  }
+  Start("1000000*t", false);
+  while (counters_.Get(Sensor::kThermal).captured < 3) std::this_thread::yield();
+  AwaitAnswers(10);
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  ASSERT_EQ(pipeline_->marks().size(), kMaxMarks);
+  EXPECT_EQ(pipeline_->marks().front().text, "3");
+  EXPECT_EQ(pipeline_->marks().back().text, "10");
+}
+
 TEST_F(EdgeCommandsTest, CommandsThatAreTooManyAreAnsweredToo) {
   constexpr std::uint64_t kCommands = 50;
   for (std::uint64_t i = 1; i <= kCommands; ++i)

@@ -91,9 +91,9 @@ void EdgePipeline::StartReceiving() {
     NameThread("receive");
     PublisherHandlers handlers;
     handlers.command = [this, &stop](const Command& command) { commands_.Push(command, stop); };
-    handlers.feedback = [this, &stop](const Feedback& feedback, CaptureTime arrival) {
+    handlers.feedback = [this, &stop](const Feedback& feedback, CaptureTime arrival, bool is_live) {
       // Its age counts on the time line of capture times.
-      feedback_.Add(feedback, arrival - clock_step_total());
+      feedback_.Add(feedback, arrival - clock_step_total(), is_live);
       if (spool_) feedback_to_record_.Push({feedback, arrival}, stop);
     };
     publisher_.Run(stop, handlers);
@@ -292,6 +292,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
 }
 
 void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
+  newest_capture_ns_ = ToNanoseconds(stamp.time);
   health_.NoteStamp(raw.sensor, stamp);
   if (raw.arrival_steady == SteadyTime{}) return;  // Not from a camera.
   health_.AddStamping(raw.sensor, clock_.SteadyNow() - raw.arrival_steady);
@@ -364,6 +365,7 @@ void EdgePipeline::RecordMessages() {
     const std::optional<ReceivedFeedback> received = feedback_to_record_.Pop({});
     spool_->Add(received->feedback, received->arrival);
   }
+  while (marks_to_record_.size() > 0) spool_->Add(*marks_to_record_.Pop({}));
 }
 
 void EdgePipeline::PublishExternalOdometry(const EncodedFrame& frame, const std::stop_token& stop) {

@@ -111,6 +111,8 @@ class EdgePipeline {
   double spool_fill_ratio() const;
   /// Returns the state of the recording; nullopt without one. Thread-safe.
   std::optional<SpoolStatus> recording() const;
+  /// Returns the newest moments that the ground had marked, the newest last.
+  const std::vector<ScanMark>& marks() const { return marks_; }
   /// Returns what a thread of the line is stuck in, in words; nullopt if all get on. Thread-safe.
   std::optional<std::string> StuckIn(SteadyTime now) const;
 
@@ -146,6 +148,8 @@ class EdgePipeline {
   /// Runs on the capture thread, which alone talks to the camera.
   void ServeNucCommands();
   void Execute(const Command& command);
+  /// Remembers the moment, in the recording, too. Returns what to answer.
+  CommandResult Mark(const Command& command);
 
   FrameSource& source_;
   Publisher& publisher_;
@@ -173,6 +177,7 @@ class EdgePipeline {
   std::uint64_t odometry_poses_published_ = 0;
 
   std::atomic<bool> source_ended_{false};
+  std::atomic<std::int64_t> newest_capture_ns_{0};  ///< 0: no frame yet.
   LatestValue<NucReport> nuc_report_;
   const TimeBase time_base_;
   bool capture_stopped_ = false;
@@ -192,6 +197,7 @@ class EdgePipeline {
   FeedbackMonitor feedback_;
   /// Feedback of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
+  BoundedQueue<RecordedLog> marks_to_record_{16, OverflowPolicy::kDropOldest};
   /// The rig with a camera that came late, for the spool thread, too.
   LatestValue<RigUpdate> rig_to_record_;
   BoundedQueue<CommandResult> nuc_answers_{64, OverflowPolicy::kDropOldest};
@@ -203,6 +209,7 @@ class EdgePipeline {
   BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest, refuse_};
   BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest, refuse_};
   std::vector<Command> scan_orders_;
+  std::vector<ScanMark> marks_;  ///< At most kMaxMarks.
   BoundedQueue<FrameToEncode> codec_queue_;
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;

@@ -14,10 +14,11 @@ void FeedbackMonitor::NoteCapture(CaptureTime capture_time, CaptureTime now) {
   shift_ = std::min(shift_.value_or(Nanoseconds::max()), Nanoseconds(now - capture_time));
 }
 
-void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival) {
+void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival, bool is_live) {
   const MutexLock lock(mutex_);
   newest_ = feedback;
   ++count_;
+  if (!is_live) return;
   if (const auto age = AgeOf(feedback, arrival)) latency_.Add(kMsPerS * ToSeconds(*age));
 }
 

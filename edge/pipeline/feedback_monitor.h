@@ -18,8 +18,9 @@ class FeedbackMonitor {
   /// A frame is there at `now` on the wall clock. Tells how far times are shifted: the frame that
   /// took least counts as having no age.
   void NoteCapture(CaptureTime capture_time, CaptureTime now);
-  /// `arrival` on the wall clock.
-  void Add(const Feedback& feedback, CaptureTime arrival);
+  /// `arrival` on the wall clock. What is about a frame that came from the recording (`is_live` is
+  /// false) says nothing of how soon advice arrives.
+  void Add(const Feedback& feedback, CaptureTime arrival, bool is_live = true);
 
   std::optional<Feedback> newest() const;
   /// Returns how old at `now` the depth frame is that the newest is about; nullopt if that is not

@@ -29,6 +29,16 @@ TEST(FeedbackMonitorTest, AgeIsFromCaptureToArrival) {
   EXPECT_EQ(monitor.age(feedback.capture_time + 3s), 3s) << "it grows while none comes";
 }
 
+TEST(FeedbackMonitorTest, WhatIsAboutAFrameOfTheRecordingTellsNotHowSoonAdviceArrives) {
+  FeedbackMonitor monitor(TimeBase::kWallClock);
+  Feedback feedback;
+  feedback.capture_time = CaptureTime(1h);
+  monitor.Add(feedback, feedback.capture_time + 50ms);
+  monitor.Add(feedback, feedback.capture_time + 70s, /*is_live=*/false);
+  EXPECT_EQ(monitor.latency().count, 2U);
+  EXPECT_NEAR(monitor.latency().p99_s, 0.050, 0.050 * kRelativeTolerance);
+}
+
 TEST(FeedbackMonitorTest, ARecordingsOwnTimesCountFromWhenItsFramesCame) {
   FeedbackMonitor monitor(TimeBase::kShifted);
   Feedback feedback;

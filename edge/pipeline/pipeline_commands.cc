@@ -1,8 +1,13 @@
 // What the ground orders while the line of edge_pipeline.cc runs.
 
+#include <fmt/format.h>
+
+#include <string>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/printable.h"
+#include "common/recording/recording.h"
 #include "edge/pipeline/edge_pipeline.h"
 
 namespace isotherm {
@@ -42,7 +47,30 @@ void EdgePipeline::Execute(const Command& command) {
     case CommandKind::kStartScan:
     case CommandKind::kStopScan:
       return scan_orders_.push_back(command);
+    case CommandKind::kMark:
+      return Answer(Mark(command));
   }
+}
+
+CommandResult EdgePipeline::Mark(const Command& command) {
+  const auto refuse = [&](const char* why) {
+    return CommandResult{command.number, CommandOutcome::kRefused, why};
+  };
+  if (command.text.empty()) return refuse("a mark needs a text");
+  if (source_ended_) return refuse("no scan is under way");
+  const CaptureTime time = CaptureTimeFromNanoseconds(newest_capture_ns_);
+  if (time == CaptureTime{}) return refuse("no frame has come yet");
+  // Whoever wrote it: recordings hold UTF-8 only.
+  const std::string text = Printable(command.text);
+  if (text.size() > kMaxMarkBytes) return refuse("the text of a mark is too long");
+  if (marks_.size() == kMaxMarks) marks_.erase(marks_.begin());
+  marks_.push_back({time, text});
+  LOG(Edge, Info) << "marked: " << text;
+  const bool is_recorded = spool_ && spool_->status().problem.empty();
+  if (spool_) marks_to_record_.Push({time, "info", kMarkPrefix + text}, {});
+  return {command.number, CommandOutcome::kDone,
+          fmt::format("marked at the capture time {:.3f} s{}", ToSeconds(time.time_since_epoch()),
+                      is_recorded ? "" : "; nothing is recorded on the rig at present")};
 }
 
 std::vector<Command> EdgePipeline::TakeScanOrders() { return std::exchange(scan_orders_, {}); }

@@ -21,6 +21,9 @@ Sensor SensorOf(const EncodedThermalFrame&) { return Sensor::kThermal; }
 
 /// A frame that got lost more often than parity explains is sent reliably, however long it takes.
 constexpr int kTriesInPieces = 3;
+/// So long after the last piece a receipt says what arrived for good: more than a round trip and
+/// the interval of receipts.
+constexpr Nanoseconds kPiecesUnderWay = 1s;
 
 Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
 
@@ -90,7 +93,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
     return;
   }
   if (echo.ping != 0) clock_echo_ = echo;
-  if (session_ == receipt.session && accepted) {
+  if (session_ == receipt.session && accepted && grounds_.AdmitReceipt(sender, now)) {
     receipt_.Set(receipt);
     receipt_at_ = now;
     depth_.OnReceipt(receipt.depth, now);
@@ -110,7 +113,7 @@ void DdsPublisher::OnPieceReport(const Received<PieceReport>& received) {
   const PeerHandle sender = ends_.piece_reports.PeerOf(received.writer);
   {
     MutexLock lock(mutex_);
-    if (!grounds_.Knows(sender) || received.message.session != session_) return;
+    if (!grounds_.IsServed(sender) || received.message.session != session_) return;
   }
   if (const auto cause = pieces_.OnReport(sender, received.message)) {
     refusals_.Add(*cause, TopicName(TopicId::kPieceReport));
@@ -122,16 +125,19 @@ void DdsPublisher::OnFeedback(const Received<Feedback>& received,
   const Feedback& feedback = received.message;
   const PeerHandle sender = ends_.feedback.PeerOf(received.writer);
   std::optional<RefusalCause> cause;
+  bool is_live = false;
   {
     MutexLock lock(mutex_);
     cause = RefusalOf(feedback, sender);
+    if (!cause && !grounds_.IsServed(sender)) return;  // One hand cannot follow two.
+    is_live = !depth_.sent().WasSentAgain(feedback.frame_number);
   }
   if (cause) {
     refusals_.Add(*cause,
                   fmt::format("topic={} session={} frame_number={}", TopicName(TopicId::kFeedback),
                               feedback.session, feedback.frame_number));
   } else if (handlers.feedback) {
-    handlers.feedback(feedback, clock_.Now());
+    handlers.feedback(feedback, clock_.Now(), is_live);
   }
 }
 
@@ -271,6 +277,7 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Out
     return written;
   }
   stream->OnPublished(number);
+  sent_at_ = clock_.SteadyNow();
   if (!in_pieces) pace_.OnSent(SensorOf(frame), number, clock_.SteadyNow());
   return OkStatus();
 }
@@ -297,6 +304,7 @@ Result<bool> DdsPublisher::BackfillFrame(const Frame& frame, int tries,
                        : writer->Write(options_.edge_id, Backfilled<Frame>{frame});
   if (!written.ok()) return Err(std::move(written));
   MutexLock lock(mutex_);
+  sent_at_ = clock_.SteadyNow();
   return stream->OnBackfilled(frame.header.frame_number);
 }
 
@@ -309,6 +317,7 @@ Status DdsPublisher::Publish(EdgeStatus status) {
     status.thermal.published = thermal_.counts().published;
     status.thermal.next_frame_number = thermal_.counts().next_frame_number;
     status.clock_echo = clock_echo_;
+    status.served_ground = grounds_.served();
   }
   status.publish_policy = policy_;
   if (status.clock_echo) status.clock_echo->sent = clock_.Now();
@@ -324,6 +333,8 @@ bool DdsPublisher::IsHandled() const {
   MutexLock lock(mutex_);
   const std::optional<Receipt> receipt = receipt_.Get();
   if (depth_.counts().published + thermal_.counts().published == 0) return true;
+  // Of pieces that got lost nothing is known, but that they do not come any more.
+  if (SendsPieces() && receipt_at_ && *receipt_at_ >= sent_at_ + kPiecesUnderWay) return true;
   return receipt && receipt->session == session_ &&
          receipt->depth.handled >= depth_.counts().next_frame_number &&
          receipt->thermal.handled >= thermal_.counts().next_frame_number;
@@ -334,6 +345,7 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
   const auto left = [&] {
     return std::max(Nanoseconds(0), Nanoseconds(deadline - clock_.SteadyNow()));
   };
+  TakeReceipts();  // While it is known when they came.
   // Acknowledged means delivered to the ground's reader, which may still refuse or drop it.
   if (!ends_.depth.WaitForAcknowledgments(left())) return false;
   if (!ends_.thermal.WaitForAcknowledgments(left())) return false;

@@ -153,6 +153,7 @@ class DdsPublisher final : public Publisher {
   std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
   std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
   std::optional<SteadyTime> receipt_at_ GUARDED_BY(mutex_);  // The newest of the session.
+  SteadyTime sent_at_ GUARDED_BY(mutex_){};                  // The newest frame.
   std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);   // Of the newest receipt.
   GroundWatch grounds_ GUARDED_BY(mutex_);
   StopBudget stop_budget_ GUARDED_BY(mutex_);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "common/base/log.h"
 
 namespace isotherm {
@@ -22,10 +24,12 @@ bool GroundWatch::Look(SteadyTime now,
   bool left = false;
   grounds_.RemoveIf([&](const GroundRegister::Ground& ground) {
     const bool is_gone = !is_there(ground.hello_writer);
+    if (is_gone) served_.OnLeft(ground.peer);
     left = left || is_gone;
     return is_gone;
   });
   LogRelation(now);
+  LogOther(now);
   const bool present = !grounds_.empty();
   if (present == is_present_) return left;
   is_present_ = present;
@@ -56,6 +60,13 @@ void GroundWatch::LookAtWays(SteadyTime now, const std::map<PeerHandle, Announce
   } else {
     LOG(Publisher, Warning) << "the ground station " << problem;
   }
+}
+
+void GroundWatch::LogOther(SteadyTime now) {
+  const PeerHandle other = served_.other(now);
+  if (std::exchange(told_other_, other) == other || other == 0) return;
+  LOG(Publisher, Warning) << "another ground station follows this rig, too: it gets what is sent, "
+                             "nothing is sent again for its sake, and its advice is not shown";
 }
 
 void GroundWatch::LogRelation(SteadyTime now) {

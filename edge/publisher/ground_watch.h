@@ -14,6 +14,7 @@
 #include "common/transport/one_way_watch.h"
 #include "edge/publisher/ground_register.h"
 #include "edge/publisher/ground_relation.h"
+#include "edge/publisher/served_ground.h"
 
 namespace isotherm {
 
@@ -35,6 +36,15 @@ class GroundWatch {
   bool Look(SteadyTime now, const std::function<bool(std::uint64_t hello_writer)>& is_there);
 
   bool Knows(PeerHandle peer) const { return grounds_.Knows(peer); }
+  /// Enters that a ground has sent a receipt of our session that can be true. Returns whether it
+  /// counts.
+  bool AdmitReceipt(PeerHandle peer, SteadyTime now) { return served_.OnReceipt(peer, now); }
+  /// Returns whether what this ground says of what it has counts, and what it advises. Before any
+  /// said so, all do.
+  bool IsServed(PeerHandle peer) const {
+    return Knows(peer) && (served_.served() == 0 || served_.served() == peer);
+  }
+  PeerHandle served() const { return served_.served(); }
   /// Returns whether a ground that follows this rig reads what `reads` says.
   bool HasFollower(const Reads& reads) const { return grounds_.HasFollower(reads); }
   /// Returns whether that holds for a ground that follows this rig, or may. An onlooker is not
@@ -58,10 +68,13 @@ class GroundWatch {
 
  private:
   void LogRelation(SteadyTime now);
+  void LogOther(SteadyTime now);
 
   const std::string edge_id_;
   GroundRegister grounds_;
   GroundRelation relation_;
+  ServedGround served_;
+  PeerHandle told_other_ = 0;  ///< Another ground that follows this rig, as logged last.
   OneWayWatch ways_;
   std::string one_way_;  ///< Empty: packets pass in both directions, or in none.
   bool is_present_ = false;

@@ -34,6 +34,14 @@ class PublishedStream {
   void NoteAgain(std::uint64_t frame_number) {
     next_ = std::max(next_, frame_number + 1);
     ++count_;
+    const auto found = Find(frame_number);
+    if (found != newest_.end()) found->again = true;
+  }
+
+  /// Returns whether a frame of the newest was sent again, some time after it was new.
+  bool WasSentAgain(std::uint64_t frame_number) const {
+    const auto found = Find(frame_number);
+    return found != newest_.end() && found->again;
   }
 
   /// Says why the receipt cannot be true: more than was published cannot have been received.
@@ -45,10 +53,8 @@ class PublishedStream {
   /// ago, and know its capture time.
   std::optional<RefusalCause> Check(const Feedback& feedback) const {
     if (feedback.frame_number >= next_) return RefusalCause::kImpossibleNumber;
-    const auto found = std::ranges::lower_bound(newest_, feedback.frame_number, {}, &Frame::number);
-    if (found == newest_.end() || found->number != feedback.frame_number) {
-      return RefusalCause::kImpossibleNumber;
-    }
+    const auto found = Find(feedback.frame_number);
+    if (found == newest_.end()) return RefusalCause::kImpossibleNumber;
     if (found->capture_time != feedback.capture_time) return RefusalCause::kOutOfRange;
     return std::nullopt;
   }
@@ -60,7 +66,18 @@ class PublishedStream {
   struct Frame {
     std::uint64_t number = 0;
     CaptureTime capture_time{};
+    bool again = false;
   };
+
+  template <typename Frames>
+  static auto FindIn(Frames& frames, std::uint64_t number) {
+    const auto found = std::ranges::lower_bound(frames, number, {}, &Frame::number);
+    return found == frames.end() || found->number != number ? frames.end() : found;
+  }
+  std::deque<Frame>::const_iterator Find(std::uint64_t number) const {
+    return FindIn(newest_, number);
+  }
+  std::deque<Frame>::iterator Find(std::uint64_t number) { return FindIn(newest_, number); }
 
   std::uint64_t next_ = 0;    ///< One above the highest number.
   std::uint64_t count_ = 0;   ///< Frames that were sent, each time.

@@ -49,6 +49,15 @@ TEST_F(PublishedStreamTest, F60FeedbackOnAFrameOfLongAgoIsRefused) {
   EXPECT_EQ(stream_.Check(About(1500)), std::nullopt);
 }
 
+TEST_F(PublishedStreamTest, WhatWasSentAgainIsToldFromWhatWasNot) {
+  stream_.NoteAgain(2);
+  stream_.NoteAgain(7);  // It was left for later.
+  EXPECT_TRUE(stream_.WasSentAgain(2));
+  EXPECT_FALSE(stream_.WasSentAgain(1));
+  EXPECT_FALSE(stream_.WasSentAgain(10));
+  EXPECT_EQ(stream_.Check(About(2)), std::nullopt);
+}
+
 TEST_F(PublishedStreamTest, ANewSessionStartsFromNothing) {
   stream_.BeginSession(0);
   EXPECT_EQ(CheckReceipt(1, 0), RefusalCause::kImpossibleNumber);

@@ -20,8 +20,9 @@ namespace isotherm {
 /// Called on the thread that runs the publisher: they must only take note. Empty ones are skipped.
 struct PublisherHandlers {
   std::function<void(const Command&)> command;
-  /// `arrival` on the edge's wall clock.
-  std::function<void(const Feedback&, CaptureTime arrival)> feedback;
+  /// `arrival` on the edge's wall clock; `is_live`: it is about a frame that was sent while it was
+  /// new, and not again since.
+  std::function<void(const Feedback&, CaptureTime arrival, bool is_live)> feedback;
 };
 
 /// Counts the frames of one stream that were given to the middleware.
@@ -113,9 +114,10 @@ class Publisher {
   virtual Status Publish(EdgeStatus status) = 0;
   virtual Status Answer(const CommandResult& result) = 0;
 
-  /// Waits until every reader has acknowledged all frames, so that nothing is lost when the process
-  /// ends. False after `timeout` (also if the ground vanished); true at once if nobody listens.
-  /// Works also when Run() has ended.
+  /// Waits until every reader has acknowledged all frames that went whole, and the ground has all
+  /// that it will get of the others, so that nothing is lost when the process ends. False after
+  /// `timeout` (also if the ground vanished); true at once if nobody listens. Works also when Run()
+  /// has ended.
   virtual bool Drain(Nanoseconds timeout) = 0;
 
   virtual void SetPolicy(PublishPolicy policy) = 0;

@@ -93,6 +93,7 @@ void Spool::Add(const EncodedFrame& frame) {
   // Counted before anything can fail: what no file has is then known as not recorded.
   ++offered_[static_cast<std::size_t>(frame.sensor())];
   BeginFileWhenDue();
+  WriteLines();
   if (IsRecording()) Note(WriteFrame(frame));
   UpdateCounters();
 }
@@ -109,6 +110,18 @@ Status Spool::WriteRig(const RigUpdate& update) {
 
 void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
   if (IsRecording()) Note(WriteFeedback(feedback, arrival, *file_->writer, newest_));
+}
+
+void Spool::Add(const RecordedLog& line) {
+  constexpr std::size_t kMaxWaiting = 100;  // Nobody has more to say while a disk is full.
+  if (waiting_lines_.size() < kMaxWaiting) waiting_lines_.push_back(line);
+  WriteLines();
+}
+
+void Spool::WriteLines() {
+  if (!IsRecording()) return;
+  for (const RecordedLog& line : std::exchange(waiting_lines_, {}))
+    if (IsRecording()) Note(file_->writer->WriteLog(line.time, line.level, line.text));
 }
 
 void Spool::Tend(bool idle) {

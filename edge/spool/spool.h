@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
@@ -97,6 +98,8 @@ class Spool {
   void Add(const RigUpdate& update);
   /// `arrival` on the edge's wall clock.
   void Add(const Feedback& feedback, CaptureTime arrival);
+  /// Goes into the next file if there is none now.
+  void Add(const RecordedLog& line);
   /// To be called several times a second. `idle`: no frame came for a moment, so that nothing but
   /// this brings to the disk what is still collected.
   void Tend(bool idle);
@@ -112,6 +115,7 @@ class Spool {
  private:
   bool IsRecording() const { return file_.has_value(); }
   void BeginFileWhenDue();
+  void WriteLines();
   Status BeginFile();
   void LookAtDisk();
   void AskForFreeBytes();
@@ -167,7 +171,8 @@ class Spool {
   std::uint64_t not_recorded_before_ = 0;   ///< When all was well last.
   std::uint64_t refused_ = 0;               ///< Messages that cannot be recorded on any disk.
   std::optional<CaptureTime> shutter_closed_at_;
-  Nanoseconds wall_minus_time_{0};  ///< As the newest file says.
+  Nanoseconds wall_minus_time_{0};          ///< As the newest file says.
+  std::vector<RecordedLog> waiting_lines_;  ///< No file has them yet.
   LatestValue<SpoolStatus> newest_status_;
   RecordedFrames recorded_frames_;
 };

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string_view>
 
+#include "common/base/printable.h"
+#include "common/dataset/text_lines.h"
 #include "ground/cli/command.h"
 #include "ground/cli/rig_order.h"
 
@@ -22,6 +24,7 @@ Examples:
   isotherm scan                      state, frames so far
   isotherm scan --stop               end it, and write everything
   isotherm scan --start              the next one
+  isotherm scan --mark "left burner" remember this moment, in both recordings and the results
   isotherm scan --stop --edge-id drone-2
 
 Try it without cameras: isotherm-edge --scene furnace-door)";
@@ -29,6 +32,7 @@ Try it without cameras: isotherm-edge --scene furnace-door)";
 struct ScanOrderArguments {
   bool start = false;
   bool stop = false;
+  std::string mark;
   RigAddress rig;
 };
 
@@ -54,17 +58,30 @@ std::string StatusText(const std::string& edge_id, const EdgeStatus& status) {
   };
   frames("depth", status.depth);
   frames("thermal", status.thermal);
+  for (const ScanMark& mark : status.marks)
+    text += fmt::format("{:<14}{}  {}\n", "mark", FormatStamp(mark.time), Printable(mark.text));
   return text;
+}
+
+/// Says what is wrong with the words of a mark; empty: nothing.
+std::string IsMark(const std::string& text) {
+  if (text.empty()) return "is empty; a mark needs words to be found by";
+  if (text != Printable(text)) return "has characters that cannot be shown, or is no UTF-8";
+  if (text.size() <= kMaxMarkBytes) return {};
+  return fmt::format("has {} bytes; a mark has {} at most", text.size(), kMaxMarkBytes);
 }
 
 Status Run(const ScanOrderArguments& arguments) {
   return WithRig(arguments.rig, [&](RigCommander& rig, const EdgeStatus& status) {
-    if (!arguments.start && !arguments.stop) {
+    if (!arguments.start && !arguments.stop && arguments.mark.empty()) {
       std::fputs(StatusText(rig.edge_id(), status).c_str(), stdout);
       return OkStatus();
     }
     Command order;
-    order.kind = arguments.start ? CommandKind::kStartScan : CommandKind::kStopScan;
+    order.kind = !arguments.mark.empty() ? CommandKind::kMark
+                 : arguments.start       ? CommandKind::kStartScan
+                                         : CommandKind::kStopScan;
+    order.text = arguments.mark;
     return SendOrder(rig, order, arguments.rig);
   });
 }
@@ -77,6 +94,11 @@ void AddScanCommand(CLI::App& app, CommandBody& body) {
   auto* const orders = command->add_option_group("order", "What to do; nothing: show the state");
   orders->add_flag("--start", arguments->start, "Begin the next scan");
   orders->add_flag("--stop", arguments->stop, "End the scan; recording and results are written");
+  orders
+      ->add_option("--mark", arguments->mark,
+                   "Remember this moment of the scan under these words, of 128 bytes at most")
+      ->type_name("TEXT")
+      ->check(IsMark);
   orders->require_option(0, 1);
   AddRigAddress(*command, arguments->rig);
   command->footer(kScanFooter);

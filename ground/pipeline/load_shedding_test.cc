@@ -21,6 +21,7 @@ TEST_F(LoadSheddingTest, WithHardlyAnyTimeThermalFramesStayAtATenthOfASecond) {
   EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 6U);
   EXPECT_EQ(pipeline_->model().counts.depth_integrated, 10U);
   EXPECT_EQ(pipeline_->model().counts.depth_behind, 0U);
+  EXPECT_NEAR(pipeline_->model().counts.longest_thermal_pause_s, 0.1, 1e-6);
   pipeline_->set_load_shedding(LoadShedding::kNone);
   for (int i = 10; i <= 12; ++i) {
     Thermal(i - 0.5);

@@ -1,5 +1,6 @@
 #include "ground/pipeline/thermal_stage.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -136,7 +137,10 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
       LeaveOut(LeftOutReason::kBehind);
       continue;
     }
-    last_fused_ = waiting.frame->header.capture_time;
+    const CaptureTime time = waiting.frame->header.capture_time;
+    const double pause_s = last_fused_ ? ToSeconds(time - *last_fused_) : 0.0;
+    counts_.longest_thermal_pause_s = std::max(counts_.longest_thermal_pause_s, pause_s);
+    last_fused_ = time;
     const StageTimer timer(times_);
     // Several thermal frames share a depth frame: what depends on that alone is done once.
     if (!std::exchange(is_prepared, true)) {

@@ -184,6 +184,7 @@ Json DescribeThermal(const ScanCounts& counts) {
   Json thermal;
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
+  thermal["longest_pause_s"] = counts.longest_thermal_pause_s;
   DescribeReasons(counts.thermal_left_out, "left_out_by_reason", thermal);
   Json& not_assigned = thermal["pixels_not_assigned"];
   not_assigned["near_an_edge"] = counts.fusion.occluded;

@@ -43,12 +43,15 @@ struct ScanCounts {
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
   EnumArray<LeftOutReason, std::uint64_t> thermal_left_out;
+  /// Between two frames that were fused one after the other, by capture time.
+  double longest_thermal_pause_s = 0.0;
   FusionReport fusion;  ///< Sum over all fused frames; dropped counts the last review, too.
 
   /// For a scan whose thermal frames come again.
   void ForgetThermal() {
     thermal_in = thermal_fused = 0;
     thermal_left_out = {};
+    longest_thermal_pause_s = 0.0;
     fusion = {};
   }
 };

@@ -74,6 +74,10 @@ void Distributor::OnItem(SessionItem item) {
   early_.push_back(std::move(item));
 }
 
+void Distributor::OnMark(const SessionMark& mark) {
+  if (mark.session == session_ && !over_ && options_.live().record()) recording_.Push(mark);
+}
+
 void Distributor::OnSessionEnd(const SessionCounters& counters) {
   if (counters.session != session_ || over_) return;
   over_ = single_scan_;

@@ -49,6 +49,8 @@ class Distributor {
   /// Takes a frame or an odometry pose.
   void OnItem(SessionItem item);
   void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
+  /// For the recording.
+  void OnMark(const SessionMark& mark);
   /// Takes a frame that came too late for the reconstruction: it is only recorded.
   void OnLate(const SessionItem& item) { Record(item); }
   void OnSessionEnd(const SessionCounters& counters);

@@ -143,6 +143,7 @@ SubscriberHandlers GroundService::Handlers() {
   handlers.external_odometry = [&to](const ExternalOdometrySample& pose) { to.OnItem(pose); };
   handlers.rig = [&to](const RigDescription& rig) { to.OnRig(rig); };
   handlers.clock = [&to](const SessionClock& clock) { to.OnClock(clock); };
+  handlers.mark = [&to](const SessionMark& mark) { to.OnMark(mark); };
   handlers.session_end = [&to](const SessionCounters& counters) { to.OnSessionEnd(counters); };
   handlers.status = [this](const EdgeStatus& status) { board_.edge.Set(status); };
   handlers.command_result = [this](const CommandResult& result) {

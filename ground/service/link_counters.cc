@@ -157,6 +157,10 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
   for (const std::filesystem::path& file : recording.files)
     link["recording_files"].push_back(file.filename().string());
   link["most_lacking_frames"] = counters.most_lacking;
+  for (const ScanMark& mark : counters.marks) {
+    link["marks"].push_back(
+        {{"time_s", ToSeconds(mark.time.time_since_epoch())}, {"text", mark.text}});
+  }
   link["refused_samples"] = counters.refused_samples;
   link["recording_finished"] = recording.closed;
   if (!recording.status.ok()) link["recording_failed_because"] = recording.status.message();

@@ -71,6 +71,16 @@ TEST(LinkCountersTest, WhatWasLeftForLaterAndNeverCameIsOnTheRig) {
   EXPECT_EQ(link["most_lacking_frames"], 763);
 }
 
+TEST(LinkCountersTest, MarksAreInTheResultsWithTheirTimes) {
+  SessionCounters counters;
+  counters.marks = {{CaptureTimeFromNanoseconds(1'500'000'000), "left burner"}};
+  Json link;
+  DescribeCounters(counters, {}, link);
+  ASSERT_EQ(link["marks"].size(), 1U);
+  EXPECT_EQ(link["marks"][0]["time_s"], 1.5);
+  EXPECT_EQ(link["marks"][0]["text"], "left burner");
+}
+
 TEST(LinkCountersTest, WhereWhatIsMissingIsToBeHadIsSaid) {
   RecordingProgress recording;
   recording.path = "out/scan.mcap";

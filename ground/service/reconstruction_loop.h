@@ -54,6 +54,7 @@ class ReconstructionLoop {
   void Handle(const ReceivedThermal& frame);
   void Handle(const Feedback& /*feedback*/) {}   // Comes from here.
   void Handle(const SessionClock& /*clock*/) {}  // For the recording.
+  void Handle(const SessionMark& /*mark*/) {}    // For the recording.
   /// Returns the next item; while there is none, does what is left for the console.
   std::optional<SessionItem> Next(SessionQueue& queue, const std::stop_token& stop);
   template <typename Frame>

@@ -130,6 +130,10 @@ void RecordingLoop::Handle(const SessionClock& clock) {
   if (recorder_ && clock.session == start_.rig.session) recorder_->Write(clock);
 }
 
+void RecordingLoop::Handle(const SessionMark& mark) {
+  if (recorder_ && mark.session == start_.rig.session) recorder_->Write(mark.mark);
+}
+
 void RecordingLoop::Handle(const ExternalOdometrySample& sample) {
   if (recorder_) recorder_->Write(sample);
 }

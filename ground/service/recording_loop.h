@@ -49,6 +49,7 @@ class RecordingLoop {
   void Handle(const SessionCounters& /*counters*/) { End(); }
   void Handle(const Feedback& feedback);
   void Handle(const SessionClock& clock);
+  void Handle(const SessionMark& mark);
   void Handle(const ExternalOdometrySample& sample);
   void Handle(const ReceivedDepth& frame) { HandleFrame(frame, Sensor::kDepth); }
   void Handle(const ReceivedThermal& frame) { HandleFrame(frame, Sensor::kThermal); }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/printable.h"
 #include "common/options/text_proto.h"
 #include "common/recording/clock_record.h"
 #include "common/recording/feedback_record.h"
@@ -91,6 +92,7 @@ void ScanRecorder::WriteBeginning() {
   WriteRig();
   if (is_recording() && rig_clock_) Note(WriteClockStep());
   if (is_recording() && rig_clock_) Note(WriteClockMetadata());
+  WriteMarks();
 }
 
 void ScanRecorder::WriteRig() {
@@ -124,6 +126,20 @@ template void ScanRecorder::WriteFrame(Sensor, const ReceivedThermal&);
 
 void ScanRecorder::Write(const Feedback& feedback) {
   if (is_recording()) Note(WriteFeedback(feedback, std::nullopt, *writer_));
+}
+
+void ScanRecorder::Write(const ScanMark& mark) {
+  marks_.push_back(mark);
+  WriteMarks();
+}
+
+void ScanRecorder::WriteMarks() {
+  if (!is_recording()) return;
+  for (const ScanMark& mark : std::exchange(marks_, {})) {
+    // Whoever sent it: recordings hold UTF-8 only.
+    if (is_recording())
+      Note(writer_->WriteLog(mark.time, "info", kMarkPrefix + Printable(mark.text)));
+  }
 }
 
 void ScanRecorder::Write(const ExternalOdometrySample& sample) {

@@ -59,6 +59,8 @@ class ScanRecorder {
   void Write(const RigDescription& rig);
   void Write(const Feedback& feedback);
   void Write(const ExternalOdometrySample& sample);
+  /// Writes it into the next file if there is none now.
+  void Write(const ScanMark& mark);
   /// Keeps what is known of the rig's clock, and writes what changed in kind: synchronisation,
   /// steps, alarm.
   void Write(const SessionClock& clock);
@@ -88,6 +90,7 @@ class ScanRecorder {
   Status BeginFile();
   void WriteBeginning();
   void WriteRig();
+  void WriteMarks();
   Status WriteClockStep();
   Status WriteClockMetadata();
   /// An error of the disk ends the file; a message that was wrong ends nothing.
@@ -118,6 +121,7 @@ class ScanRecorder {
   BackOff back_off_;
   SteadyTime retry_at_{};
   SteadyTime begun_at_{};                  ///< The newest file.
+  std::vector<ScanMark> marks_;            ///< No file has them yet.
   std::optional<SessionClock> rig_clock_;  ///< The newest.
   double step_sum_s_ = 0.0;                ///< As the newest file says.
 };

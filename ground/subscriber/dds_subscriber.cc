@@ -1,8 +1,12 @@
 #include "ground/subscriber/dds_subscriber.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "common/base/host_name.h"
@@ -68,6 +72,7 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
 
 Status DdsSubscriber::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.Open(participant, refusals_));
+  self_ = participant.peer();
   return ends_.hello.Write(options_.ground_id, own_hello_);
 }
 
@@ -192,11 +197,14 @@ void DdsSubscriber::OnAdmitted(const EdgeStatus& status, CaptureTime /*arrival*/
   const ClockReading now = ReadClocks(clock_);
   if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
   echo_.OnStatus(gate_.owner(), status, now.steady);
+  served_.OnStatus(status, self_, now.steady);
   clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);
-  sessions_.OnStatus(status, now.steady);
+  const std::vector<ScanMark> marks = sessions_.OnStatus(status, now.steady);
   sessions_.SetClock(clock_watch_.clock());
   if (handlers_.status) handlers_.status(status);
   if (handlers_.clock) handlers_.clock(clock_watch_.clock());
+  if (!handlers_.mark) return;
+  for (const ScanMark& mark : marks) handlers_.mark({status.session, mark});
 }
 
 template <typename ReceivedFrame>
@@ -253,8 +261,10 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   const std::string edge_id = followed_.edge_id();
   const RigSighting sighting =
       watch_.Look(now, edge_id, ends_.status.matched_writers() > 0, is_present);
-  const std::string one_way =
+  std::string problem =
       watch_.LookAtWays(now, edge_id, ends_.announced.Of(Role::kEdge), echo_.deaf_rig());
+  if (problem.empty()) problem = SecondGroundText();
+  if (!sighting.problem.empty()) problem = sighting.problem;
   for (const std::uint64_t session : sighting.sessions_to_refuse) {
     Receipt refusal;
     refusal.session = session;
@@ -262,10 +272,22 @@ void DdsSubscriber::LookAround(SteadyTime now) {
     static_cast<void>(ends_.receipt.Write(edge_id, refusal));  // Repeated every second.
   }
   MutexLock lock(mutex_);
-  stats_.rig_problem = sighting.problem.empty() ? one_way : sighting.problem;
+  stats_.rig_problem = std::move(problem);
   if (sighting.present == stats_.edge_present) return;
   stats_.edge_present = sighting.present;
   LOG(Subscriber, Info) << (sighting.present ? "rig found" : "rig lost");
+}
+
+std::string DdsSubscriber::SecondGroundText() const {
+  if (served_.other() == 0) return {};
+  const std::map<PeerHandle, Announcement> grounds = ends_.announced.Of(Role::kGround);
+  const auto other = grounds.find(served_.other());
+  if (other == grounds.end()) return {};  // It has left, and the rig does not know it yet.
+  return fmt::format(
+      "THE RIG SERVES ANOTHER GROUND STATION, on \"{}\": nothing is sent again for this one, and "
+      "the "
+      "other's advice is shown",
+      other->second.host);
 }
 
 void DdsSubscriber::KeepCounters() {

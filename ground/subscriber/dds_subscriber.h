@@ -19,6 +19,7 @@
 #include "ground/subscriber/piece_collector.h"
 #include "ground/subscriber/rig_gate.h"
 #include "ground/subscriber/rig_watch.h"
+#include "ground/subscriber/served_watch.h"
 #include "ground/subscriber/session_history.h"
 #include "ground/subscriber/session_tracker.h"
 #include "ground/subscriber/stream_receiver.h"
@@ -77,6 +78,7 @@ class DdsSubscriber final : public Subscriber {
                StreamReceiver<ReceivedFrame>* receiver, CaptureTime arrival);
   /// Finds out who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
+  std::string SecondGroundText() const;
   /// True for samples of the rig that is followed; counts those of others.
   bool IsFollowed(const std::string& edge_id);
 
@@ -103,6 +105,8 @@ class DdsSubscriber final : public Subscriber {
   std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
+  ServedWatch served_;
+  PeerHandle self_ = 0;  // As the rig knows this ground.
   EchoWatch echo_;
   SteadyTime receipt_due_{};
   int frames_since_receipt_ = 0;

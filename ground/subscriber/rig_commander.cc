@@ -104,7 +104,7 @@ Result<CommandResult> RigCommander::Send(Command command, Nanoseconds timeout) {
   if (came) return *answer;
   return Err(Unavailable(
       fmt::format("rig \"{}\" did not answer within {:.1f} s; it may follow the order yet: "
-                  "`isotherm nuc` shows the state",
+                  "`isotherm scan` and `isotherm nuc` show the state",
                   edge_id_, ToSeconds(timeout))));
 }
 

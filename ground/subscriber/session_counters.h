@@ -43,6 +43,12 @@ struct SessionClock {
   std::uint64_t alarms = 0;
 };
 
+/// A moment of a session that somebody had marked.
+struct SessionMark {
+  std::uint64_t session = 0;
+  ScanMark mark;
+};
+
 /// Counts what a session delivered, for results and the console.
 struct SessionCounters {
   std::uint64_t session = 0;
@@ -54,6 +60,7 @@ struct SessionCounters {
   std::uint64_t most_lacking = 0;
   std::uint64_t refused_samples = 0;  ///< Samples of all topics, since this process runs.
   FeedbackLatency feedback;           ///< As the edge measured it.
+  std::vector<ScanMark> marks{};      ///< Moments that somebody had marked, in that order.
   std::optional<SessionClock> clock;  ///< nullopt before the first status.
 };
 

@@ -10,6 +10,8 @@ namespace {
 /// Sessions that are followed at once: the present one, the one before until it is closed, and
 /// edges that were started again in between.
 constexpr std::size_t kMaxEntries = 8;
+/// Marks of a session; whoever sends more has no operator.
+constexpr std::size_t kMaxKeptMarks = 100;
 
 /// `rig` is what the edge said, `final` whether it is its last word. Until then holes may be
 /// frames that are still on their way or that the edge dropped itself: they count as missing.
@@ -51,16 +53,26 @@ SessionTracker::Entry& SessionTracker::Touch(std::uint64_t session, SteadyTime n
 
 void SessionTracker::OnFrame(std::uint64_t session, SteadyTime now) { Touch(session, now); }
 
-void SessionTracker::OnStatus(const EdgeStatus& status, SteadyTime now) {
-  if (status.scan_state == ScanState::kIdle) return;
+std::vector<ScanMark> SessionTracker::OnStatus(const EdgeStatus& status, SteadyTime now) {
+  if (status.scan_state == ScanState::kIdle) return {};
   const Entry* known = Find(status.session);
-  if (known != nullptr && known->ended) return;  // Its last word was said; repeats are no activity.
+  if (known != nullptr && known->ended)
+    return {};  // Its last word was said; repeats are no activity.
   Entry& entry = Touch(status.session, now);
   entry.depth = status.depth;
   entry.thermal = status.thermal;
   entry.feedback = status.feedback;
   entry.most_lacking = std::max(entry.most_lacking, status.spool_frames);
   entry.ended = status.scan_state == ScanState::kEnded;
+  // Each status has the newest ones only, and a rig that was started again has none of before.
+  std::vector<ScanMark> fresh;
+  for (const ScanMark& mark : status.marks) {
+    const bool is_known = std::ranges::find(entry.marks, mark) != entry.marks.end();
+    if (is_known || entry.marks.size() == kMaxKeptMarks) continue;
+    entry.marks.push_back(mark);
+    fresh.push_back(mark);
+  }
+  return fresh;
 }
 
 void SessionTracker::SetClock(const SessionClock& clock) {
@@ -89,6 +101,7 @@ SessionCounters SessionTracker::Counters(const StreamTally& depth,
   counters.closed = entry->closed;
   counters.feedback = entry->feedback;
   counters.most_lacking = entry->most_lacking;
+  counters.marks = entry->marks;
   counters.clock = entry->clock;
   counters.depth = MakeCounters(depth, entry->depth, entry->ended);
   counters.thermal = MakeCounters(thermal, entry->thermal, entry->ended);

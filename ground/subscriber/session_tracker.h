@@ -22,7 +22,8 @@ class SessionTracker {
  public:
   explicit SessionTracker(Nanoseconds grace) : grace_(grace) {}
 
-  void OnStatus(const EdgeStatus& status, SteadyTime now);
+  /// Returns the marks that are new.
+  std::vector<ScanMark> OnStatus(const EdgeStatus& status, SteadyTime now);
   /// Takes what is known of the rig's clock; it goes into the counters of its session, if that was
   /// seen.
   void SetClock(const SessionClock& clock);
@@ -52,6 +53,7 @@ class SessionTracker {
     StreamStatus thermal{};
     FeedbackLatency feedback{};
     std::uint64_t most_lacking = 0;
+    std::vector<ScanMark> marks{};
     std::optional<SessionClock> clock{};
     bool ended = false;
     bool closed = false;

@@ -83,6 +83,22 @@ TEST_F(SessionTrackerTest, StatusesSayHowSoonFeedbackArrivedAndHowMuchWasLacking
   EXPECT_EQ(counters.most_lacking, 700U) << "what was caught up with was lacking all the same";
 }
 
+TEST_F(SessionTrackerTest, MarksAreKeptOnceWhicheverStatusesArrive) {
+  const ScanMark left{CaptureTimeFromNanoseconds(1), "left"};
+  const ScanMark right{CaptureTimeFromNanoseconds(2), "right"};
+  const ScanMark top{CaptureTimeFromNanoseconds(3), "top"};
+  EdgeStatus status = Status(1, ScanState::kScanning, 9, 5);
+  std::vector<ScanMark> fresh;
+  for (const std::vector<ScanMark>& marks :
+       {std::vector{left}, std::vector{left, right}, std::vector{right}, std::vector{top}}) {
+    status.marks = marks;  // The last is of a rig that was started again.
+    for (const ScanMark& mark : sessions_.OnStatus(status, now_)) fresh.push_back(mark);
+  }
+  EXPECT_EQ(fresh, (std::vector{left, right, top}));
+  const SessionCounters counters = sessions_.Counters(Tally(1, 9, 9), Tally(1, 5, 5));
+  EXPECT_EQ(counters.marks, (std::vector{left, right, top}));
+}
+
 TEST_F(SessionTrackerTest, ACompleteSessionClosesAtOnceAndOnce) {
   sessions_.OnFrame(1, now_);
   sessions_.OnStatus(Status(1, ScanState::kEnded, 10, 5), now_);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/mutex.h"
+#include "common/transport/announcement.h"
 #include "ground/subscriber/subscriber.h"
 #include "tests/link/edge_side.h"
 
@@ -19,7 +20,8 @@ class GroundSide {
   GroundSide(const TransportEnvironment& environment, const Clock& clock, int domain,
              Nanoseconds work_per_frame = Nanoseconds(0))
       : work_per_frame_(work_per_frame) {
-    participant_ = std::move(*Participant::Create(environment, domain));
+    participant_ = std::move(
+        *Participant::Create(environment, domain, Announcement{Role::kGround, "", "desk"}));
     SubscriberOptions options;
     options.edge_id = "test-edge";
     SubscriberHandlers handlers;

@@ -343,7 +343,7 @@ TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
                                 .text = "no shutter"})
                       .ok());
     };
-    handlers.feedback = [&](const Feedback& feedback, CaptureTime) { newest.Set(feedback); };
+    handlers.feedback = [&](const Feedback& feedback, CaptureTime, bool) { newest.Set(feedback); };
     publisher->Run(stop, handlers);
   });
   ASSERT_TRUE(publisher->WaitForGround(kLinkPatience, {}));

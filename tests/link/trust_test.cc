@@ -151,7 +151,7 @@ TEST_F(TrustTest, F60OnlyFeedbackOnAFrameThatWasPublishedIsTaken) {
   Mutex mutex;
   std::vector<std::uint64_t> taken;
   PublisherHandlers handlers;
-  handlers.feedback = [&](const Feedback& feedback, CaptureTime) {
+  handlers.feedback = [&](const Feedback& feedback, CaptureTime, bool) {
     const MutexLock lock(mutex);
     taken.push_back(feedback.frame_number);
   };

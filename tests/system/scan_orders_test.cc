@@ -6,7 +6,11 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
+#include <string>
 #include <vector>
 
 #include "common/testing/temporary_directory.h"
@@ -53,6 +57,27 @@ class ScanOrdersTest : public ::testing::Test {
     return all;
   }
 
+  /// Returns of how many recordings below `folder` isotherm inspect says this.
+  static int FilesThatSay(const std::filesystem::path& folder, const std::string& text) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.path().extension() != ".mcap") continue;
+      const Finished inspected = RunToEnd({Tool(), {"inspect", entry.path()}, {}}, kPatience);
+      files += inspected.output.find(text) == std::string::npos ? 0 : 1;
+    }
+    return files;
+  }
+  /// Returns all that the results below `folder` say.
+  static std::string Results(const std::filesystem::path& folder) {
+    std::string text;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.path().filename() != "stats.json") continue;
+      std::ifstream file(entry.path());
+      text.append(std::istreambuf_iterator<char>(file), {});
+    }
+    return text;
+  }
+
   TemporaryDirectory folder_;
 };
 
@@ -66,6 +91,9 @@ TEST_F(ScanOrdersTest, AScanIsStoppedAndTheNextIsAScanOfItsOwn) {
   const Finished early = Scan({"--start"});
   EXPECT_EQ(early.status, kRefused);
   EXPECT_THAT(early.output, HasSubstr("a scan is under way; stop it first"));
+  const Finished marked = Scan({"--mark", "left burner"});
+  EXPECT_EQ(marked.status, 0) << marked.output;
+  EXPECT_THAT(marked.output, HasSubstr("marked at the capture time"));
   const Finished stopped = Scan({"--stop"});
   EXPECT_EQ(stopped.status, 0) << stopped.output;
   EXPECT_THAT(stopped.output, HasSubstr("the scan ends"));
@@ -73,6 +101,7 @@ TEST_F(ScanOrdersTest, AScanIsStoppedAndTheNextIsAScanOfItsOwn) {
   EXPECT_TRUE(ground.WaitForOutput("results  /", kPatience)) << ground.output();
   EXPECT_THAT(Scan({}).output, HasSubstr("scan          ended"));
   EXPECT_EQ(Scan({"--stop"}).status, kRefused);
+  EXPECT_EQ(Scan({"--mark", "too late"}).status, kRefused);
 
   const Finished started = Scan({"--start"});
   EXPECT_EQ(started.status, 0) << started.output;
@@ -98,6 +127,10 @@ TEST_F(ScanOrdersTest, AScanIsStoppedAndTheNextIsAScanOfItsOwn) {
     EXPECT_TRUE(received[i].thermal == sent[i].thermal)
         << received[i].thermal.size() << " of " << sent[i].thermal.size();
   }
+  for (const char* folder : {"recordings", "ground"}) {
+    EXPECT_EQ(FilesThatSay(Path(folder), "mark: left burner"), 1) << folder;
+  }
+  EXPECT_THAT(Results(Path("ground")), HasSubstr("\"text\": \"left burner\""));
   if (HasFailure()) std::cout << "edge:\n" << edge.output() << "ground:\n" << ground.output();
 }
 

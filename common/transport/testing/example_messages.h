@@ -101,11 +101,14 @@ inline EdgeStatus Good() {
   status.thermal.dropped = {{"queue full", 1}};
   status.clock_echo = {.ping = 5, .received = {}, .sent = {}};
   status.nuc.reason = "drift";
+  status.marks = {{CaptureTimeFromNanoseconds(9), "left burner"},
+                  {CaptureTimeFromNanoseconds(12), "right burner"}};
+  status.served_ground = 0x1122334455667788;
   return status;
 }
 template <>
 inline Command Good() {
-  return {.number = 5, .kind = CommandKind::kHoldNuc, .hold_s = 3.0};
+  return {.number = 5, .kind = CommandKind::kMark, .hold_s = 3.0, .text = "left burner"};
 }
 template <>
 inline CommandResult Good() {

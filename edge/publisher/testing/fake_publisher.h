@@ -18,7 +18,7 @@ class FakePublisher final : public Publisher {
  public:
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override {
     for (const Command& command : commands) handlers.command(command);
-    for (const auto& [message, arrival] : feedback) handlers.feedback(message, arrival);
+    for (const auto& [message, arrival] : feedback) handlers.feedback(message, arrival, true);
     handed_over_ = true;
     MutexLock lock(mutex_);
     changed_.wait(lock, stop, [] { return false; });
