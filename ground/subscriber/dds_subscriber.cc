@@ -285,8 +285,7 @@ std::string DdsSubscriber::SecondGroundText() const {
   if (other == grounds.end()) return {};  // It has left, and the rig does not know it yet.
   return fmt::format(
       "THE RIG SERVES ANOTHER GROUND STATION, on \"{}\": nothing is sent again for this one, and "
-      "the "
-      "other's advice is shown",
+      "advice is the other's",
       other->second.host);
 }
 
