@@ -217,6 +217,10 @@ function(isotherm_test)
       set_tests_properties(${test} PROPERTIES
         ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
     endif()
+    # Whole scans keep both cores busy: what mostly waits beside them must not starve.
+    if(ARG_LABELS MATCHES "scan")
+      set_tests_properties(${test} PROPERTIES PROCESSORS 2)
+    endif()
     # The longest begin first, so that none is left alone at the end.
     if(ARG_LABELS MATCHES "integration|scan" OR ARG_TIMEOUT GREATER_EQUAL 300)
       set_tests_properties(${test} PROPERTIES COST ${ARG_TIMEOUT})

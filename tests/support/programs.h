@@ -21,7 +21,7 @@ std::filesystem::path GroundService();
 int OwnDomain();
 
 /// Far more than any program needs here: a limit for hanging, not a requirement.
-inline constexpr Seconds kPatience{120};
+inline constexpr Seconds kPatience{240};
 
 /// Options of a coarse, quick model.
 std::vector<std::string> QuickModel();
