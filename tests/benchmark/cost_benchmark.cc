@@ -172,7 +172,7 @@ double RunCycle(GroundPipeline& pipeline, const Frames& frames, int cycle) {
 }
 
 /// Memory of the process that is in use now.
-double Resident_mib() {
+double ResidentMib() {
   std::ifstream status("/proc/self/statm");
   double size = 0.0, resident = 0.0;
   status >> size >> resident;
@@ -187,7 +187,7 @@ void Measure(benchmark::State& state, const Setup& setup) {
   const int cycles = setup.minutes > 0
                          ? static_cast<int>(std::lround(setup.minutes * kMinute_s / kCycle_s))
                          : kCycles;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const auto pipeline =
         GroundPipeline::Create(OptionsOf(setup), RigOf(setup), PoseAt(setup, 0.0));
     CHECK(pipeline.has_value());
@@ -210,7 +210,7 @@ void Measure(benchmark::State& state, const Setup& setup) {
     state.counters["thermal_ms"] = model.stages[Stage::kThermalFrame]->Percentile(50);
     // Of one second of both cameras' frames.
     state.counters["second_ms"] = 1e3 * busy_s / ((cycles - 1) * kCycle_s);
-    state.counters["resident_mib"] = Resident_mib();
+    state.counters["resident_mib"] = ResidentMib();
     state.counters["blocks"] = model.tsdf().block_count();
     const double across_m = 640.0 / 570.0 * setup.distance_m;
     state.counters["view_m2"] = across_m * across_m * setup.height / setup.width;
