@@ -33,10 +33,9 @@ class ProcessorWait {
   Seconds total_{};
 };
 
-/// Edge and ground promise to leave within two seconds after SIGTERM, SIGINT and SIGHUP, while
-/// cameras and disk answer (docs/architecture.md). Half as much again, because a virtual computer
-/// may be slower than usual for an hour, and results are computed meanwhile.
-inline constexpr Seconds kTimeToLeave{3.0};
+/// Edge and ground promise to leave within this after SIGTERM, SIGINT and SIGHUP, while cameras and
+/// disk answer (docs/architecture.md).
+inline constexpr Seconds kTimeToLeave{2.0};
 
 /// Says how a program left that was told to.
 struct Departure {
