@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -18,6 +17,7 @@
 #include "common/base/check.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "tests/benchmark/machine.h"
 
 namespace isotherm {
 namespace {
@@ -169,15 +169,6 @@ double RunCycle(GroundPipeline& pipeline, const Frames& frames, int cycle) {
     pipeline.ProcessDepth(depth);
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Memory of the process that is in use now.
-double ResidentMib() {
-  std::ifstream status("/proc/self/statm");
-  double size = 0.0, resident = 0.0;
-  status >> size >> resident;
-  constexpr double kPage_mib = 4096.0 / (1 << 20);
-  return resident * kPage_mib;
 }
 
 void Measure(benchmark::State& state, const Setup& setup) {

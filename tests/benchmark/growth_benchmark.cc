@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "common/base/quantile.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "tests/benchmark/machine.h"
 
 namespace isotherm {
 namespace {
@@ -54,15 +54,6 @@ const std::vector<DepthFrame>& PeriodFrames() {
     return rendered;
   }();
   return frames;
-}
-
-/// Memory of the process that is in use now.
-double ResidentMib() {
-  std::ifstream status("/proc/self/statm");
-  double size = 0.0, resident = 0.0;
-  status >> size >> resident;
-  constexpr double kPageMib = 4096.0 / (1 << 20);
-  return resident * kPageMib;
 }
 
 /// The same for equal voxels. Touches them all.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <thread>
 
 namespace isotherm {
@@ -16,6 +17,14 @@ std::string DescribeMachine() {
   return fmt::format("{} cores, load average {:.2f} {:.2f} {:.2f}, SIMD {}",
                      std::thread::hardware_concurrency(), load[0], load[1], load[2],
                      hwy::TargetName(targets & -targets));
+}
+
+double ResidentMib() {
+  std::ifstream status("/proc/self/statm");
+  double size = 0.0, resident = 0.0;
+  status >> size >> resident;
+  constexpr double kPageMib = 4096.0 / (1 << 20);
+  return resident * kPageMib;
 }
 
 }  // namespace isotherm

@@ -8,4 +8,7 @@ namespace isotherm {
 /// minutes, and the SIMD instruction set that the kernels take.
 std::string DescribeMachine();
 
+/// Returns the memory of this process that is in use now, MiB.
+double ResidentMib();
+
 }  // namespace isotherm
