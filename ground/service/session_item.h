@@ -21,8 +21,9 @@ struct SessionStart {
 
 /// An item on the line from the link to reconstruction and recording. A RigDescription describes
 /// the session's rig anew: a camera came late.
-using SessionItem = std::variant<SessionStart, RigDescription, ReceivedDepth, ReceivedThermal,
-                                 ExternalOdometrySample, SessionCounters, Feedback, SessionClock, SessionMark>;
+using SessionItem =
+    std::variant<SessionStart, RigDescription, ReceivedDepth, ReceivedThermal,
+                 ExternalOdometrySample, SessionCounters, Feedback, SessionClock, SessionMark>;
 using SessionQueue = BoundedQueue<SessionItem>;
 
 inline bool IsFrame(const SessionItem& item) {

@@ -33,7 +33,7 @@ struct SubscriberHandlers {
   std::function<void(const RigDescription&)> rig;
   std::function<void(const EdgeStatus&)> status;
   std::function<void(const SessionClock&)> clock;  ///< After each status.
-  std::function<void(const SessionMark&)> mark;            ///< Each one once.
+  std::function<void(const SessionMark&)> mark;    ///< Each one once.
   std::function<void(const CommandResult&)> command_result;
   /// Again and again, at least every 100 ms: reception goes on.
   std::function<void()> turn;
