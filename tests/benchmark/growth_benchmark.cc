@@ -65,7 +65,7 @@ double VoxelSum(const TsdfVolume& volume) {
   return sum;
 }
 
-void BM_Growth(benchmark::State& state) {
+void Growth(benchmark::State& state) {
   const int periods = static_cast<int>(state.range(0));
   GroundOptions options;
   VolumeOptions& volume = *options.mutable_volume();
@@ -80,7 +80,7 @@ void BM_Growth(benchmark::State& state) {
   options.set_threads(2);
   Rig rig;
   rig.depth = Camera();
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const auto pipeline = GroundPipeline::Create(options, rig, RigidTransform::Identity());
     CHECK(pipeline.has_value());
     std::vector<double> last_period_ms;
@@ -112,7 +112,7 @@ void BM_Growth(benchmark::State& state) {
 }
 
 // Six metres of wall, without and with a limit: the same voxels.
-BENCHMARK(BM_Growth)
+BENCHMARK(Growth)
     ->Name("BM_LongWall")
     ->ArgNames({"periods", "length_cm", "limit_mib"})
     ->Args({25, 696, 0})
@@ -122,7 +122,8 @@ BENCHMARK(BM_Growth)
     ->UseRealTime();
 
 // Ten times the way in four times the volume.
-BENCHMARK(BM_Growth)
+BENCHMARK(Growth)
+    ->Name("BM_Growth")
     ->ArgNames({"periods", "length_cm", "limit_mib"})
     ->Args({1, 96, 0})
     ->Args({10, 384, 0})

@@ -75,7 +75,7 @@ void Preprocess(benchmark::State& state, ThreadPool& pool) {
   const Scene& scene = SharedScene();
   DepthPreprocessor preprocessor(scene.options.preprocessor(), *scene.frames.rig.depth,
                                  scene.frames.rig.depth_sensor);
-  for (auto _ : state)
+  while (state.KeepRunning())
     benchmark::DoNotOptimize(preprocessor.Process(scene.frames.depth.back(), pool).valid_pixels);
   state.counters["per_pixel"] = PerItem(scene.last->depth_m.size());
 }
@@ -83,7 +83,7 @@ void Preprocess(benchmark::State& state, ThreadPool& pool) {
 void Bilateral(benchmark::State& state, ThreadPool& pool) {
   const Scene& scene = SharedScene();
   Image<float> filtered_m;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     BilateralFilter(scene.last->depth_m, scene.options.preprocessor().expert(),
                     scene.frames.rig.depth_sensor.noise_at_1m_m, pool, filtered_m);
     benchmark::DoNotOptimize(filtered_m.data());
@@ -96,7 +96,7 @@ void MakeMaps(benchmark::State& state, ThreadPool& pool) {
   const PreprocessorOptions& options = scene.options.preprocessor();
   constexpr int kReach = 3;
   SurfaceMaps maps;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     MakeSurfaceMaps(
         scene.last->depth_m, scene.last->camera,
         {kReach, StepPerPixel(scene.last->camera, options.expert().max_surface_angle_deg()),
@@ -114,7 +114,7 @@ void Icp(benchmark::State& state, ThreadPool& pool, std::size_t level) {
       static_cast<float>(options.expert().max_distance_m()),
       static_cast<float>(std::cos(options.expert().max_normal_angle_deg() * kRadPerDeg))};
   const SurfaceMaps& maps = scene.last->maps[level];
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     benchmark::DoNotOptimize(
         AccumulateIcp(maps, scene.T_map_depth, scene.view, scene.volume->grid(), limits, pool));
   }
@@ -124,7 +124,8 @@ void Icp(benchmark::State& state, ThreadPool& pool, std::size_t level) {
 void Integrate(benchmark::State& state, ThreadPool& pool) {
   Scene& scene = SharedScene();
   TsdfIntegrator integrator(scene.options.tsdf());
-  for (auto _ : state) integrator.Integrate(*scene.last, scene.T_map_depth, pool, *scene.volume);
+  while (state.KeepRunning())
+    integrator.Integrate(*scene.last, scene.T_map_depth, pool, *scene.volume);
   state.counters["per_voxel"] = PerItem(integrator.updated_blocks().size() * kBlockVoxels);
 }
 
@@ -133,7 +134,7 @@ void Raycast(benchmark::State& state, ThreadPool& pool, int halvings) {
   const CameraModel camera = scene.last->camera.Downscaled(halvings);
   Raycaster raycaster;
   SurfaceMaps maps;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     raycaster.Cast(*scene.volume, camera, scene.T_map_depth, scene.MinWeight(), pool, maps);
     benchmark::DoNotOptimize(maps.vz.data());
   }
@@ -148,7 +149,7 @@ void FuseThermal(benchmark::State& state, ThreadPool& pool) {
   ThermalFuser fuser(scene.options.thermal(), *rig.thermal, rig.thermal_sensor, scene.MinWeight());
   ThermalVolume thermal(kMaxBlocks);
   FusionReport report;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     report = fuser.Fuse({frame, T_map_thermal, scene.view.camera, scene.view.T_map_depth}, {},
                         *scene.volume, pool, thermal);
   }
@@ -181,7 +182,8 @@ void Register(const std::string& name, const Kernel& kernel, std::int64_t target
 }
 
 void RegisterAll(std::int64_t target) {
-  using namespace std::placeholders;
+  using std::placeholders::_1;
+  using std::placeholders::_2;
   Register("BM_Preprocess", Preprocess, target);
   Register("BM_BilateralFilter", Bilateral, target);
   Register("BM_SurfaceMaps", MakeMaps, target);

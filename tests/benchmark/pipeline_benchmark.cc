@@ -12,7 +12,7 @@ namespace {
 
 /// One iteration is the beginning of a scan through all stages, depth and thermal, with a new
 /// volume.
-void BM_Pipeline(benchmark::State& state) {
+void Pipeline(benchmark::State& state) {
   const BenchmarkFrames& frames = FurnaceDoorFrames();
   std::vector<ThermalFramePtr> thermal;
   for (const ThermalFrame& frame : frames.thermal)
@@ -22,7 +22,7 @@ void BM_Pipeline(benchmark::State& state) {
   options.set_threads(static_cast<int>(state.range(1)));
 
   std::unique_ptr<GroundPipeline> last;  // Its times are told.
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     Result<std::unique_ptr<GroundPipeline>> pipeline =
         GroundPipeline::Create(options, frames.rig, std::nullopt);
     CHECK(pipeline.has_value());
@@ -51,7 +51,8 @@ void BM_Pipeline(benchmark::State& state) {
   }
 }
 
-BENCHMARK(BM_Pipeline)
+BENCHMARK(Pipeline)
+    ->Name("BM_Pipeline")
     ->ArgNames({"voxel_mm", "threads"})
     ->Args({2, 1})
     ->Args({2, 2})
