@@ -6,17 +6,20 @@
 namespace isotherm {
 namespace {
 
-void BlurRow(std::span<const float> weights, std::span<const float> in, std::span<float> out) {
-  const int width = static_cast<int>(in.size());
-  const int radius = static_cast<int>(weights.size()) - 1;
-  for (int x = 0; x < width; ++x) {
-    float sum = weights[0] * in[static_cast<std::size_t>(x)];
-    for (int i = 1; i <= radius; ++i) {
-      sum += weights[static_cast<std::size_t>(i)] *
-             (in[static_cast<std::size_t>(std::max(0, x - i))] +
-              in[static_cast<std::size_t>(std::min(width - 1, x + i))]);
-    }
-    out[static_cast<std::size_t>(x)] = sum;
+/// The first and the last pixel go on beyond the border: `padded` has room for them.
+void BlurRow(std::span<const float> weights, std::span<const float> in, std::span<float> padded,
+             std::span<float> out) {
+  const std::size_t radius = weights.size() - 1, width = in.size();
+  std::ranges::fill(padded.first(radius), in.front());
+  std::ranges::copy(in, padded.begin() + static_cast<std::ptrdiff_t>(radius));
+  std::ranges::fill(padded.last(radius), in.back());
+  const float* const middle = padded.data() + radius;
+  for (std::size_t x = 0; x < width; ++x) out[x] = weights[0] * middle[x];
+  for (std::size_t i = 1; i <= radius; ++i) {
+    const float weight = weights[i];
+    const float* const before = middle - i;
+    const float* const after = middle + i;
+    for (std::size_t x = 0; x < width; ++x) out[x] += weight * (before[x] + after[x]);
   }
 }
 
@@ -38,10 +41,11 @@ std::vector<float> GaussianWeights(double sigma_px) {
 
 void Blur(std::span<const float> weights, Image<float>& image, Image<float>& scratch) {
   const int radius = static_cast<int>(weights.size()) - 1;
-  if (radius == 0) return;
+  if (radius == 0 || image.size() == 0) return;
   const int width = image.width(), height = image.height();
   scratch.Resize(width, height);
-  for (int y = 0; y < height; ++y) BlurRow(weights, image.Row(y), scratch.Row(y));
+  std::vector<float> padded(static_cast<std::size_t>(width + 2 * radius));
+  for (int y = 0; y < height; ++y) BlurRow(weights, image.Row(y), padded, scratch.Row(y));
   for (int y = 0; y < height; ++y) {
     float* const out = image.Row(y).data();
     const float* const middle = scratch.Row(y).data();

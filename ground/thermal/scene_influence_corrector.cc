@@ -57,8 +57,9 @@ SceneInfluenceCorrector::SceneInfluenceCorrector(const SceneInfluence& influence
       coverage_(columns_, rows_),
       values_(columns_, rows_),
       near_(columns_, rows_),
-      sums_(columns_, rows_),
       divisors_(columns_, rows_),
+      covered_(columns_, rows_),
+      row_sums_(columns_, rows_),
       near_row_(static_cast<std::size_t>(columns_)) {
   CHECK(width > 0 && height > 0);
   for (int x = 0; x < width; ++x) across_.push_back(CellsAround(x, columns_));
@@ -82,33 +83,38 @@ void SceneInfluenceCorrector::AverageCells(const Image<float>& celsius) {
   }
 }
 
-void SceneInfluenceCorrector::AverageNeighbourhoods() {
+void SceneInfluenceCorrector::SumNeighbourhoods(const Image<float>& cells, Image<float>& sums) {
   const int radius = static_cast<int>(weights_.size()) - 1;
-  const auto weight = [this](int offset) {
-    return weights_[static_cast<std::size_t>(std::abs(offset))];
-  };
-  for (int y = 0; y < rows_; ++y) {
-    for (int x = 0; x < columns_; ++x) {
-      float sum = 0.0F, divisor = 0.0F;
-      for (int i = std::max(0, x - radius); i <= std::min(columns_ - 1, x + radius); ++i) {
-        const float w = weight(i - x) * coverage_.At(i, y);
-        sum += w * values_.At(i, y);
-        divisor += w;
-      }
-      sums_.At(x, y) = sum;
-      divisors_.At(x, y) = divisor;
+  row_sums_.Fill(0.0F);
+  sums.Fill(0.0F);
+  // Neighbour by neighbour for a whole row at once, which the compiler makes vectors of.
+  for (int offset = -radius; offset <= radius; ++offset) {
+    const float weight = weights_[static_cast<std::size_t>(std::abs(offset))];
+    const int first = std::max(0, -offset), last = std::min(columns_, columns_ - offset);
+    for (int y = 0; y < rows_; ++y) {
+      const float* const in = cells.Row(y).data() + offset;
+      float* const out = row_sums_.Row(y).data();
+      for (int x = first; x < last; ++x) out[x] += weight * in[x];
     }
   }
   for (int y = 0; y < rows_; ++y) {
-    for (int x = 0; x < columns_; ++x) {
-      float sum = 0.0F, divisor = 0.0F;
-      for (int i = std::max(0, y - radius); i <= std::min(rows_ - 1, y + radius); ++i) {
-        sum += weight(i - y) * sums_.At(x, i);
-        divisor += weight(i - y) * divisors_.At(x, i);
-      }
-      // Nothing has a value within reach: nothing is corrected there.
-      near_.At(x, y) = divisor > 0.0F ? sum / divisor : values_.At(x, y);
+    float* const out = sums.Row(y).data();
+    for (int i = std::max(0, y - radius); i <= std::min(rows_ - 1, y + radius); ++i) {
+      const float weight = weights_[static_cast<std::size_t>(std::abs(i - y))];
+      const float* const in = row_sums_.Row(i).data();
+      for (int x = 0; x < columns_; ++x) out[x] += weight * in[x];
     }
+  }
+}
+
+void SceneInfluenceCorrector::AverageNeighbourhoods() {
+  for (std::size_t i = 0; i < values_.size(); ++i)
+    covered_.pixels()[i] = coverage_.pixels()[i] * values_.pixels()[i];
+  SumNeighbourhoods(covered_, near_);
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    // Nothing has a value within reach: nothing is corrected there.
+    const float divisor = divisors_.pixels()[i];
+    near_.pixels()[i] = divisor > 0.0F ? near_.pixels()[i] / divisor : values_.pixels()[i];
   }
 }
 
@@ -127,6 +133,7 @@ void SceneInfluenceCorrector::Correct(Image<float>& celsius) {
   const auto total_fraction = static_cast<float>(influence_.total_fraction);
   const float gain = 1.0F / (1.0F - near_fraction - total_fraction);
   AverageCells(celsius);
+  SumNeighbourhoods(coverage_, divisors_);
   std::ranges::copy(measured_.pixels(), values_.pixels().begin());
   // The means are of the own temperatures, which are what is looked for: begin with the measured
   // ones, and repeat.

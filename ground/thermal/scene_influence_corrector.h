@@ -52,6 +52,8 @@ class SceneInfluenceCorrector {
   };
 
   void AverageCells(const Image<float>& celsius);
+  /// The sum around each cell, weighted by the Gaussian; outside of the image there is nothing.
+  void SumNeighbourhoods(const Image<float>& cells, Image<float>& sums);
   /// The near mean of `values_`, into `near_`.
   void AverageNeighbourhoods();
   /// The total mean of `values_`.
@@ -65,7 +67,8 @@ class SceneInfluenceCorrector {
   Image<float> measured_;                  ///< Mean of each cell.
   Image<float> coverage_;                  ///< Number of pixels with a value in each cell.
   Image<float> values_, near_;             ///< The unknowns: own temperatures and their near mean.
-  Image<float> sums_, divisors_;           ///< After the pass along rows.
+  Image<float> divisors_;                  ///< The sum of `coverage_` around each cell.
+  Image<float> covered_, row_sums_;        ///< Scratch of AverageNeighbourhoods.
   std::vector<CellInterpolation> across_;  ///< By column of pixels.
   std::vector<float> near_row_;            ///< By column of cells, for one row of pixels.
 };
