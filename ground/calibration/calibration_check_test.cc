@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "common/base/noise.h"
@@ -114,9 +115,8 @@ shutter { first_s: 5 })",
   }
 
   /// With thermal stamps late by `late_s`, each off by some more.
-  static CalibrationCheckReport Check(double late_s, std::optional<double> calibrated_s,
-                                      const ScanModel& scan = pipeline_->model(),
-                                      const Rig& rig = *rig_) {
+  static CalibrationCheck CheckOf(double late_s, std::optional<double> calibrated_s,
+                                  const ScanModel& scan, const Rig& rig) {
     constexpr double kJitter_s = 0.001;
     CalibrationCheck check(Quick(), rig, calibrated_s);
     for (const std::shared_ptr<ThermalFrame>& frame : frames_) {
@@ -125,7 +125,12 @@ shutter { first_s: 5 })",
           FromSeconds(late_s + kJitter_s * NormalNoise(kSeed, frame->header.frame_number));
       check.Add(std::move(late), scan);
     }
-    const CalibrationCheckReport report = check.Finish(scan, {});
+    return check;
+  }
+  static CalibrationCheckReport Check(double late_s, std::optional<double> calibrated_s,
+                                      const ScanModel& scan = pipeline_->model(),
+                                      const Rig& rig = *rig_) {
+    const CalibrationCheckReport report = CheckOf(late_s, calibrated_s, scan, rig).Finish(scan, {});
     std::printf("seed %d, stamps late by %+.1f ms, %.2f s:\n%s\n", static_cast<int>(kSeed),
                 1e3 * late_s, report.elapsed_s, TextOf(report).c_str());
     return report;
@@ -136,6 +141,22 @@ shutter { first_s: 5 })",
   inline static std::unique_ptr<GroundPipeline> with_gaps_;
   inline static std::vector<std::shared_ptr<ThermalFrame>> frames_;
 };
+
+TEST_F(CalibrationCheckTest, GivesUpWhileItLooksAtTheSurface) {
+  std::stop_source stop;
+  int reports_after = 0;
+  const CalibrationCheckReport report = CheckOf(0.0, {}, pipeline_->model(), *rig_)
+                                            .Finish(
+                                                pipeline_->model(),
+                                                [&](double) {
+                                                  reports_after += stop.stop_requested() ? 1 : 0;
+                                                  stop.request_stop();
+                                                },
+                                                stop.get_token());
+  EXPECT_EQ(report.reason, "told to stop");
+  EXPECT_FALSE(report.refinement);
+  EXPECT_EQ(reports_after, 0);
+}
 
 TEST_F(CalibrationCheckTest, WhatIsRightAgrees) {
   const CalibrationCheckReport report = Check(0.0, -0.03);

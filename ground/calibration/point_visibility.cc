@@ -189,13 +189,14 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
 }
 
 void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views,
-                       const std::function<void(double)>& progress) {
+                       const std::function<void(double)>& progress, const std::stop_token& stop) {
   PoseViewer viewer(views, tsdf, pool);
   std::deque<PoseView> window;
   std::size_t next = 0, done = 0;
   for (StampedThermal& frame : views.frames) {
-    if (progress) progress(static_cast<double>(done++) / static_cast<double>(views.frames.size()));
     frame.visible.clear();
+    if (stop.stop_requested()) continue;
+    if (progress) progress(static_cast<double>(done++) / static_cast<double>(views.frames.size()));
     const CaptureTime time = frame.time + FromSeconds(views.delay_s);
     if (!Covered(views, time, range_s)) continue;
     // There is a pose in between however short the range is.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <stop_token>
 #include <vector>
 
 #include "common/concurrency/thread_pool.h"
@@ -19,8 +20,10 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
 /// Fills StampedThermal::visible: the points that the thermal camera sees from all poses of the
 /// trajectory within `range_s` of the image's stamp, clear of silhouettes and not too obliquely.
 /// The surface of `tsdf` (in the trajectory's `world`) decides, cast from poses a few hundredths of
-/// a second apart. `progress` gets the fraction done, 0..1.
+/// a second apart. `progress` gets the fraction done, 0..1. Gives up soon after `stop` was
+/// requested; the frames that are left show nothing.
 void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views,
-                       const std::function<void(double)>& progress);
+                       const std::function<void(double)>& progress,
+                       const std::stop_token& stop = {});
 
 }  // namespace isotherm

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "ground/calibration/alignment_step.h"
@@ -149,6 +150,8 @@ SceneInfluence Allowed(const SceneInfluence& found) {
   return allowed;
 }
 
+Status ToldToStop() { return Unavailable("told to stop"); }
+
 /// Corrects the placement step by step.
 class Refiner {
  public:
@@ -163,14 +166,14 @@ class Refiner {
 
   /// The views show the scan from `placement`.
   Status Refine(const Level& level, const std::function<void(double)>& progress) {
-    TextureAlignment alignment(views_, pool_);
-    alignment.PrepareImages(refinement_.after.influence, level.blur_px);
+    const TextureAlignment& alignment = alignment_.emplace(views_, pool_);
+    alignment_->PrepareImages(refinement_.after.influence, level.blur_px, stop_);
     const AlignmentPrior prior{refinement_.prior_sigma, {}};
     const bool is_last = level.blur_px == 0.0;
     const Result<bool> settled =
         Settle(alignment, level.points, prior, TrajectoryDrift(),
                is_last ? kConverged : kNearEnough, PartOf(progress, 0.0, is_last ? 0.4 : 1.0));
-    if (stop_.stop_requested()) return Unavailable("told to stop");
+    if (stop_.stop_requested()) return ToldToStop();
     // A blur may hide what sharp images show.
     if (!is_last) return OkStatus();
     if (!settled) return settled.error();
@@ -178,14 +181,12 @@ class Refiner {
     return RefineWithDrift(alignment, level.points, PartOf(progress, 0.4, 1.0));
   }
 
-  /// After the last level.
+  /// After the last level, whose images are sharp.
   Refinement Finish() {
-    TextureAlignment alignment(views_, pool_);
-    alignment.PrepareImages(refinement_.after.influence, 0.0);
     refinement_.held_out =
-        alignment.CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
+        alignment_->CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
     refinement_.epoch_offset =
-        LargestEpochOffset(alignment.CompareEpochs(refinement_.after, kHeldOutPoints));
+        LargestEpochOffset(alignment_->CompareEpochs(refinement_.after, kHeldOutPoints));
     refinement_.after.influence = Allowed(refinement_.after.influence);
     refinement_.correction = CorrectionBetween(refinement_.before, refinement_.after);
     refinement_.covariance += CommonCovariance(refinement_.after.camera, refinement_.prior_sigma);
@@ -206,7 +207,7 @@ class Refiner {
     AlignmentStep step;
     PlacementVector last_step = PlacementVector::Zero();
     for (int i = 0; i < kMaxIterations; ++i) {
-      if (stop_.stop_requested()) return Err(Unavailable("told to stop"));
+      if (stop_.stop_requested()) return Err(ToldToStop());
       const AlignmentEquations equations = alignment.Linearize(refinement_.after, drift, points);
       if (equations.textured_points < kMinTexturedPoints) return Err(TooFew(equations));
       step =
@@ -281,6 +282,7 @@ class Refiner {
   const ScanViews& views_;
   ThreadPool& pool_;
   const std::stop_token& stop_;
+  std::optional<TextureAlignment> alignment_;  ///< Of the present level.
   Refinement refinement_;
 };
 
@@ -302,6 +304,7 @@ Result<Refinement> RefinePlacement(const ScanViews& views, const ThermalPlacemen
   constexpr double kLevelCount = std::size(kLevels);
   double done = 0.0;
   for (const Level& level : kLevels) {
+    if (stop.stop_requested()) return Err(ToldToStop());
     const Status seen =
         look_again(refiner.placement(), level.range_s,
                    PartOf(progress, done / kLevelCount, (done + 0.5) / kLevelCount));

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
+#include <stop_token>
 
 #include "common/base/noise.h"
 #include "ground/calibration/testing/wall_scan.h"
@@ -83,6 +84,28 @@ TEST(RigRefinementTest, PlacementIsFoundAgain) {
 }
 
 /// Without its two parameters the pose is 2.9 pixels off.
+TEST(RigRefinementTest, WhoIsToldToStopLooksNoFurther) {
+  for (const int at_look : {0, 1, 3}) {
+    ScanViews views = ScanOf({.seed = 1});
+    ThreadPool pool(2);
+    std::stop_source stop;
+    int looks = 0, reports_after = 0;
+    const LookAgain look_again = [&](const ThermalPlacement& placement, double,
+                                     const std::function<void(double)>&) {
+      if (++looks == at_look) stop.request_stop();
+      return Look(views, placement);
+    };
+    if (at_look == 0) stop.request_stop();
+    const Result<Refinement> refined = RefinePlacement(
+        views, TruePlacement(), {}, look_again, pool,
+        [&](double) { reports_after += stop.stop_requested() ? 1 : 0; }, stop.get_token());
+    ASSERT_FALSE(refined);
+    EXPECT_EQ(refined.error().message(), "told to stop");
+    EXPECT_EQ(looks, at_look);
+    EXPECT_EQ(reports_after, 0) << "nothing was compared";
+  }
+}
+
 TEST(RigRefinementTest, InfluenceOfTheSceneIsFoundToo) {
   const Result<Refinement> refined = RefineWall(
       {.contrast_k = 40.0, .near_fraction = 0.05, .total_fraction = 0.03}, PlacementVector::Zero());

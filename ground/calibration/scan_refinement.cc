@@ -15,7 +15,7 @@ Result<Refinement> RefineByScan(const ScanModel& scan, const std::vector<Stamped
     views.T_thermal_depth = placement.T_thermal_depth;
     views.delay_s = placement.delay_s;
     views.frames = frames;
-    return AddSurface(scan, kFinestPoints, range_s, views, seen);
+    return AddSurface(scan, kFinestPoints, range_s, views, seen, stop);
   };
   return RefinePlacement(views, before, prior, look_again, scan.pool, progress, stop);
 }

@@ -63,7 +63,7 @@ std::optional<double> AppliedDelay(const RecordingInfo& info) {
 }
 
 Status AddSurface(const ScanModel& scan, std::size_t max_points, double range_s, ScanViews& views,
-                  const std::function<void(double)>& progress) {
+                  const std::function<void(double)>& progress, const std::stop_token& stop) {
   views.trajectory = scan.trajectory.poses();
   views.pose_drift_m = kDriftPerVoxel * scan.tsdf().grid().voxel_size_m;
   if (views.frames.size() < kMinThermalFrames) {
@@ -91,7 +91,7 @@ Status AddSurface(const ScanModel& scan, std::size_t max_points, double range_s,
                     "with more shape",
                     views.trajectory.size(), poses, kMaxPoseSigma_px));
   }
-  FindVisiblePoints(scan.tsdf(), range_s, scan.pool, views, progress);
+  FindVisiblePoints(scan.tsdf(), range_s, scan.pool, views, progress, stop);
   return OkStatus();
 }
 

@@ -109,7 +109,8 @@ TextureAlignment::TextureAlignment(const ScanViews& views, ThreadPool& pool)
   }
 }
 
-void TextureAlignment::PrepareImages(const SceneInfluence& influence, double sigma_px) {
+void TextureAlignment::PrepareImages(const SceneInfluence& influence, double sigma_px,
+                                     const std::stop_token& stop) {
   influence_ = Convergent(influence);
   images_.assign(views_.frames.size(), {});
   const std::vector<double> distances_m = Distances();
@@ -121,7 +122,7 @@ void TextureAlignment::PrepareImages(const SceneInfluence& influence, double sig
   const double usual_m = known_m[known_m.size() / 2];
   pool_.ParallelFor(static_cast<int>(views_.frames.size()), [&](int index) {
     const auto i = static_cast<std::size_t>(index);
-    if (!(distances_m[i] > 0.0)) return;
+    if (!(distances_m[i] > 0.0) || stop.stop_requested()) return;
     const StampedThermal& frame = views_.frames[i];
     images_[i] = FindOwnTemperatures(*frame.temperature_raw, frame.scale, influence_);
     if (sigma_px == 0.0) return;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "common/concurrency/thread_pool.h"
@@ -36,8 +37,9 @@ class TextureAlignment {
   /// Gaussian of this standard deviation at the usual distance, so that it is as wide on the
   /// surface from any distance. Otherwise nearness would sharpen edges, which passes for a
   /// misalignment. Placements with another influence are compared by how temperatures change with
-  /// it.
-  void PrepareImages(const SceneInfluence& influence, double sigma_px);
+  /// it. Gives up soon after `stop` was requested; nothing can be compared then.
+  void PrepareImages(const SceneInfluence& influence, double sigma_px,
+                     const std::stop_token& stop = {});
 
   /// By the first `points` of the points; by the drift's values too if it has any.
   AlignmentEquations Linearize(const ThermalPlacement& placement, const TrajectoryDrift& drift,
