@@ -52,6 +52,12 @@ std::vector<std::string> QuickModel() {
   return {"--set", "volume.voxel_size_m=0.006", "--set", "tsdf.expert.truncation_distance_m=0.024"};
 }
 
+std::vector<std::string> QuickScan() {
+  std::vector<std::string> options = QuickModel();
+  options.insert(options.end(), {"--set", "calibration_check.expert.enabled=false"});
+  return options;
+}
+
 void SimulateScan(const std::filesystem::path& path, double duration_s) {
   const Finished simulated = RunToEnd({Tool(),
                                        {"simulate", "--scene", "corner-sphere", "--duration",

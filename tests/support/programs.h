@@ -25,6 +25,9 @@ inline constexpr Seconds kPatience{240};
 
 /// Options of a coarse, quick model.
 std::vector<std::string> QuickModel();
+/// The same for what does not ask how the cameras are calibrated: that is not checked at the end,
+/// which takes several times as long as a short scan.
+std::vector<std::string> QuickScan();
 
 /// Renders a short simulated scan: 640 x 480 depth and 382 x 288 thermal frames of a corner with a
 /// sphere. Fails the running test if that does not work.

@@ -51,7 +51,7 @@ class EdgeRestartTest : public ::testing::Test {
     results_ = folder_.path() / results;
     std::vector<std::string> arguments = {"--domain", std::to_string(OwnDomain()), "--once",
                                           "--output", results_};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     ground_.emplace(Command{GroundService(), arguments, {}});
     ASSERT_TRUE(ground_->WaitForOutput("ready", kPatience)) << ground_->output();

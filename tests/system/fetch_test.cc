@@ -121,7 +121,7 @@ TEST_F(FetchTest, AnAttemptThatIsKilledIsGoneOnWith) {
 TEST_F(FetchTest, AGroundThatIsGoneAndLacksFramesKeepsNothingBack) {
   std::vector<std::string> arguments = {"--domain", std::to_string(OwnDomain()), "--output",
                                         folder_.path() / "ground"};
-  const std::vector<std::string> quick = QuickModel();
+  const std::vector<std::string> quick = QuickScan();
   arguments.insert(arguments.end(), quick.begin(), quick.end());
   Process ground({GroundService(), arguments, {}});
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();

@@ -47,9 +47,9 @@ class GroundDiskTest : public ::testing::Test {
   Command Ground(const std::vector<std::string>& more = {}) const {
     Command ground{
         GroundService(), {"--domain", std::to_string(OwnDomain()), "--output", Path("ground")}, {}};
-    const std::vector<std::string> quick = QuickModel();
-    ground.arguments.insert(ground.arguments.end(), more.begin(), more.end());
+    const std::vector<std::string> quick = QuickScan();
     ground.arguments.insert(ground.arguments.end(), quick.begin(), quick.end());
+    ground.arguments.insert(ground.arguments.end(), more.begin(), more.end());
     return ground;
   }
 

@@ -75,9 +75,10 @@ TEST_F(GroundDiskTest, F42AStuckRecordingCostsTheRecordingOnly) {
   if (HasFailure()) std::cout << "edge:\n" << edge.output << "ground:\n" << ground.output();
 }
 
+/// And before the calibration has been checked.
 TEST_F(GroundDiskTest, F38SigtermEndsTheGroundWhileItsRecordingIsStuck) {
   PutPipeInPlaceOfTheRecording();
-  Process ground(Ground({"--once"}));
+  Process ground(Ground({"--once", "--set", "calibration_check.expert.enabled=true"}));
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   Process edge(EndlessEdge());
   ASSERT_TRUE(edge.WaitForOutput("tracked", kPatience)) << edge.output() << ground.output();

@@ -84,7 +84,7 @@ class LinkOutageTest : public TwoHostsTest {
 
   void StartGround(const std::string& profile) {
     std::vector<std::string> arguments = {"--output", results_};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     ground_process_.emplace(On(ground_, profile, GroundService(), arguments));
     ASSERT_TRUE(ground().WaitForOutput("ready", kPatience)) << ground().output();

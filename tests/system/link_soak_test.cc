@@ -108,7 +108,7 @@ class LinkSoakTest : public ::testing::Test {
   void StartGround() {
     results_ = folder_.path() / ("ground-" + std::to_string(++grounds_));
     std::vector<std::string> arguments = {"--once", "--output", results_};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     ground_.emplace(link_->On(NetworkEnd::kGround, GroundService(), arguments));
     ASSERT_TRUE(ground_->WaitForOutput("ready", kPatience)) << ground_->output();

@@ -35,7 +35,7 @@ class LivePiecesTest : public ::testing::Test {
     link_->network().SetBoth(kFar);
     const std::filesystem::path output = folder_.path() / ("ground-" + pieces);
     std::vector<std::string> arguments = {"--output", output, "--once"};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     Process ground(link_->On(NetworkEnd::kGround, GroundService(), arguments));
     EXPECT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();

@@ -26,7 +26,7 @@ class NetworkDownTest : public TwoHostsTest {
   }
   Command Ground() const {
     std::vector<std::string> arguments = {"--output", folder_.path() / "ground"};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     return On(ground_, LanProfile(ground_), GroundService(), arguments);
   }

@@ -35,7 +35,7 @@ TEST(OneWayTest, F29WhichDirectionIsDeadIsSaid) {
   WriteSmallRig(rig);
 
   std::vector<std::string> arguments = {"--output", folder.path() / "ground"};
-  const std::vector<std::string> quick = QuickModel();
+  const std::vector<std::string> quick = QuickScan();
   arguments.insert(arguments.end(), quick.begin(), quick.end());
   Process ground((*link)->On(NetworkEnd::kGround, GroundService(), arguments));
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();

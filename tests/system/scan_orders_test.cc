@@ -39,7 +39,7 @@ class ScanOrdersTest : public ::testing::Test {
   }
   Command Ground() const {
     std::vector<std::string> arguments = {"--domain", Domain(), "--output", Path("ground")};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     return {GroundService(), arguments, {}};
   }

@@ -48,7 +48,7 @@ class ShortTypesTest : public ::testing::Test {
   }
   Command Ground(const std::string& folder) const {
     return {GroundService(),
-            Joined({"--domain", Domain(), "--output", Path(folder), "--once"}, QuickModel()),
+            Joined({"--domain", Domain(), "--output", Path(folder), "--once"}, QuickScan()),
             {}};
   }
 

@@ -322,7 +322,7 @@ TEST_F(ThermalDaemonTest, GroundSaysThatThereAreCountsOnlyAndGeometryGoesOn) {
       {"--once", "--domain", std::to_string(OwnDomain()), "--output", folder_.path() / "ground"},
       {},
       {}};
-  const std::vector<std::string> quick = QuickModel();
+  const std::vector<std::string> quick = QuickScan();
   ground_command.arguments.insert(ground_command.arguments.end(), quick.begin(), quick.end());
   Process ground(ground_command);
   Command edge_command = Edge({"--set", "source.depth_camera.enabled=true"});

@@ -45,7 +45,7 @@ class TwoRigsTest : public ::testing::Test {
   Command Ground(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {"--domain", std::to_string(OwnDomain()), "--output",
                                           Path("ground")};
-    const std::vector<std::string> quick = QuickModel();
+    const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {GroundService(), arguments, {}};
