@@ -6,7 +6,7 @@
 #   deploy/install-deps.sh --build    only what the build and the demo need (Node.js is for tests only)
 #   deploy/install-deps.sh --arm64    also a cross compiler, an emulator and, unpacked into build/arm64-sysroot (0.8 GB),
 #                                     the arm64 libraries for the preset arm64; this system's libraries stay as they are
-#   deploy/install-deps.sh --images   also what deploy/make-readme-images.sh and the plots of deploy/bench.sh need
+#   deploy/install-deps.sh --images   also what deploy/make-readme-images.sh, the plots of deploy/bench.sh and deploy/bench_live.sh need
 #   deploy/install-deps.sh --check    also what deploy/check.sh and the presets clang and fuzz need
 #   deploy/install-deps.sh --coverage also what the preset coverage needs
 #   deploy/install-deps.sh --list     print the packages, install nothing
@@ -70,7 +70,7 @@ case "${1-}" in
   --arm64) arm64=1; add_test_packages; packages="$packages g++-aarch64-linux-gnu qemu-user mmdebstrap" ;;
   --check) add_test_packages; packages="$packages clang-14 clang-tidy-14 libclang-rt-14-dev" ;;
   --coverage) add_test_packages; packages="$packages gcovr" ;;
-  --images) packages="$packages python3 python3-pil zstd fonts-dejavu-core gnuplot-nox" ;;
+  --images) packages="$packages python3 python3-pil zstd fonts-dejavu-core gnuplot-nox stress-ng" ;;
   --list) add_test_packages; for package in $packages; do echo "$package"; done; exit 0 ;;
   *) echo "usage: deploy/install-deps.sh [--build | --arm64 | --images | --check | --coverage | --list]" >&2; exit 64 ;;
 esac

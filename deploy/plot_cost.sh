@@ -39,7 +39,7 @@ set y2tics
 set yrange [0:*]
 set y2range [0:*]
 set grid ytics linecolor "#d0d0d0"
-set key top left
+set key above
 ${4-}
 plot "$data/$2" using 1:2 title "depth frame" with linespoints linewidth 2 pointtype 7 linecolor "#1f77b4", \\
      "$data/$2" using 1:3 title "thermal frame" with linespoints linewidth 2 pointtype 5 linecolor "#d62728", \\
