@@ -23,12 +23,6 @@ int ThreadCount(const GroundOptions& options) {
 
 const StageStats* IfCalled(const StageStats& stats) { return stats.count() > 0 ? &stats : nullptr; }
 
-ThermalThinning Thinning(LoadShedding load_shedding) {
-  if (load_shedding == LoadShedding::kNone) return ThermalThinning::kNone;
-  return load_shedding == LoadShedding::kHalfThermal ? ThermalThinning::kEverySecond
-                                                     : ThermalThinning::kSparse;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
@@ -235,8 +229,8 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, TrackedFrame& frame) 
 }
 
 bool GroundPipeline::IsDue(const TrackedFrame& frame) {
-  if (load_shedding_ == LoadShedding::kEverySecond &&
-      !std::exchange(integrate_next_, !integrate_next_)) {
+  const int stride = IntegrationStride(load_shedding_);
+  if (stride > 1 && turn_++ % stride != 0) {
     ++counts_.depth_behind;
     return false;
   }

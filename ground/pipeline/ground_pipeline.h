@@ -15,6 +15,7 @@
 #include "ground/model/block_spiller.h"
 #include "ground/model/model_file.h"
 #include "ground/options/ground_options.pb.h"
+#include "ground/pipeline/load_shedding.h"
 #include "ground/pipeline/thermal_pass.h"
 #include "ground/pipeline/thermal_stage.h"
 #include "ground/scan/depth_report.h"
@@ -25,15 +26,6 @@
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
-
-/// The work that a pipeline leaves out under load. It costs quality where the next frames do
-/// not see the same again.
-enum class LoadShedding : std::uint8_t {
-  kNone,
-  kHalfThermal,    ///< Every second thermal frame is left out ("behind").
-  kSparseThermal,  ///< ThermalThinning::kSparse.
-  kEverySecond,    ///< So too, and every second depth frame is tracked but not integrated.
-};
 
 /// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame
 /// at a time, in capture-time order. Both drivers, live and inline, call it; it owns no thread but
@@ -136,7 +128,7 @@ class GroundPipeline {
   std::vector<PoseCertainty> certainties_;  ///< One for each tracked frame, in order of time.
   bool thermal_has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   LoadShedding load_shedding_ = LoadShedding::kNone;
-  bool integrate_next_ = true;                 ///< With kEverySecond.
+  int turn_ = 0;  ///< To be integrated, with kEverySecond and kEveryFourth.
   std::optional<ThermalStage> thermal_stage_;  ///< Only if the rig's thermal frames can be fused.
 };
 

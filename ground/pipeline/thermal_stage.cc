@@ -48,17 +48,18 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
 bool ThermalStage::Add(ThermalFramePtr frame) {
   // Also frames that are left out: they tell of corrections.
   const NucAge nuc = nuc_epochs_.Follow(*frame);
+  const CaptureTime time = frame->header.capture_time;
   if (!frame->valid) {
-    LeaveOut(LeftOutReason::kNuc);
+    LeaveOut(LeftOutReason::kNuc, time);
     return false;
   }
   if (frame->temperature_raw.width() != camera_.width ||
       frame->temperature_raw.height() != camera_.height) {
-    LeaveOut(LeftOutReason::kWrongSize);
+    LeaveOut(LeftOutReason::kWrongSize, time);
     return false;
   }
   if (ToSeconds(frame->header.capture_sigma) > options_.expert().max_time_sigma_s()) {
-    LeaveOut(LeftOutReason::kTimeUncertain);
+    LeaveOut(LeftOutReason::kTimeUncertain, time);
     return false;
   }
   waiting_.push_back({std::move(frame), nuc});
@@ -67,8 +68,8 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
   // are left out anyway (max_depth_gap_s).
   constexpr std::size_t kMaxWaiting = 64;
   if (waiting_.size() > kMaxWaiting) {
+    LeaveOut(LeftOutReason::kDepthStopped, waiting_.front().frame->header.capture_time);
     waiting_.pop_front();
-    LeaveOut(LeftOutReason::kDepthStopped);
   }
   return true;
 }
@@ -119,9 +120,24 @@ bool ThermalStage::IsThinnedOut(ThermalThinning thinning, CaptureTime time) {
   // by a twentieth of what it sees. Larger: less work, and seams between frames; smaller: a slow
   // computer stays behind.
   constexpr Nanoseconds kSparseInterval = std::chrono::milliseconds(80);
+  // Four a second: all else has been left out by then.
+  constexpr Nanoseconds kScarceInterval = std::chrono::milliseconds(230);
+  if (thinning == ThermalThinning::kNone) return false;
   if (thinning == ThermalThinning::kEverySecond) return std::exchange(skip_next_, !skip_next_);
-  return thinning == ThermalThinning::kSparse && last_fused_ && time >= *last_fused_ &&
-         time - *last_fused_ < kSparseInterval;
+  return last_fused_ && time >= *last_fused_ &&
+         time - *last_fused_ <
+             (thinning == ThermalThinning::kSparse ? kSparseInterval : kScarceInterval);
+}
+
+void ThermalStage::NotePause(CaptureTime time) {
+  const bool was_unusable =
+      last_unusable_ && last_fused_ && *last_unusable_ > *last_fused_ && *last_unusable_ < time;
+  if (last_fused_ && was_thinned_ && !was_unusable) {
+    counts_.longest_thermal_pause_s =
+        std::max(counts_.longest_thermal_pause_s, ToSeconds(time - *last_fused_));
+  }
+  last_fused_ = time;
+  was_thinned_ = false;
 }
 
 void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool) {
@@ -130,17 +146,16 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
     const Waiting waiting = std::move(waiting_.front());
     waiting_.pop_front();
     if (const auto reason = WhyLeftOut(waiting.frame->header.capture_time, depth)) {
-      LeaveOut(*reason);
+      LeaveOut(*reason, waiting.frame->header.capture_time);
       continue;
     }
     if (IsThinnedOut(depth.thinning, waiting.frame->header.capture_time)) {
       LeaveOut(LeftOutReason::kBehind);
+      was_thinned_ = true;
       continue;
     }
     const CaptureTime time = waiting.frame->header.capture_time;
-    const double pause_s = last_fused_ ? ToSeconds(time - *last_fused_) : 0.0;
-    counts_.longest_thermal_pause_s = std::max(counts_.longest_thermal_pause_s, pause_s);
-    last_fused_ = time;
+    NotePause(time);
     const StageTimer timer(times_);
     // Several thermal frames share a depth frame: what depends on that alone is done once.
     if (!std::exchange(is_prepared, true)) {

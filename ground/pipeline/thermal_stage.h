@@ -29,6 +29,7 @@ enum class ThermalThinning : std::uint8_t {
   /// All that follow one that is fused within kSparseInterval. Some stay however little time there
   /// is: surface that is passed meanwhile would have no temperature at all.
   kSparse,
+  kScarce,  ///< The same within kScarceInterval.
 };
 
 /// The rig at a tracked depth frame, in the coordinates of `tsdf`.
@@ -97,6 +98,12 @@ class ThermalStage {
   void Fuse(const Waiting& waiting, const TrackedDepth& depth, ThermalVolume& thermal,
             ThreadPool& pool);
   void LeaveOut(LeftOutReason reason) { ++counts_.thermal_left_out[reason]; }
+  void LeaveOut(LeftOutReason reason, CaptureTime time) {
+    LeaveOut(reason);
+    last_unusable_ = time;
+  }
+  /// To be called when a frame is fused.
+  void NotePause(CaptureTime time);
 
   const ThermalOptions options_;
   const CameraModel camera_;
@@ -112,6 +119,8 @@ class ThermalStage {
   std::deque<Waiting> waiting_;
   bool skip_next_ = false;  ///< With ThermalThinning::kEverySecond.
   std::optional<CaptureTime> last_fused_;
+  bool was_thinned_ = false;                  ///< Since then.
+  std::optional<CaptureTime> last_unusable_;  ///< Left out for another reason.
 };
 
 }  // namespace isotherm

@@ -43,7 +43,8 @@ struct ScanCounts {
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
   EnumArray<LeftOutReason, std::uint64_t> thermal_left_out;
-  /// Between two frames that were fused one after the other, by capture time.
+  /// By capture time, between two frames that were fused one after the other, where some between
+  /// them were left out to keep up and none for another reason.
   double longest_thermal_pause_s = 0.0;
   FusionReport fusion;  ///< Sum over all fused frames; dropped counts the last review, too.
 

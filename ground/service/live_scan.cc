@@ -129,17 +129,22 @@ void LiveScan::NoteQueueTime(const void* frame) {
 void LiveScan::KeepUp(CaptureTime queued_at) {
   const Nanoseconds queued = clock_.Now() - queued_at;
   // Fractions of live.expert.max_wait_s. What the model misses least goes first: every second
-  // thermal frame, then all but ten per second; depth frames are always tracked. All are well below
-  // 1 because `queued` is not the whole wait: the assembler holds a frame until the next one of the
-  // other stream has come. In a slow hour with 0.45 and 0.7 alone all 600 depth frames were tracked
-  // and 185 of 800 thermal ones fused (docs/performance.md). Smaller: work is left out that could
-  // have been done; larger: frames wait beyond max_wait_s before anything gives way. Not tuned.
+  // thermal frame, then all but ten per second, then every second integration; depth frames are
+  // always tracked. These are well below 1 because `queued` is not the whole wait: the assembler
+  // holds a frame until the next one of the other stream has come. In a slow hour with 0.45 and 0.7
+  // alone all 600 depth frames were tracked and 185 of 800 thermal ones fused
+  // (docs/performance.md). Smaller: work is left out that could have been done; larger: frames wait
+  // beyond max_wait_s before anything gives way. Not tuned.
   constexpr double kHalfThermalFraction = 0.35;
   constexpr double kSparseThermalFraction = 0.45;
   constexpr double kIntegrationFraction = 0.7;
+  // Where that is not enough, as beside a program that takes half a core of two slow ones, a
+  // standing queue would remain. Not tuned.
+  constexpr double kQueueFraction = 1.5;
   const double fraction = ToSeconds(queued) / options_.live().expert().max_wait_s();
   is_behind_ = fraction > kHalfThermalFraction;
-  pipeline_->set_load_shedding(fraction > kIntegrationFraction     ? LoadShedding::kEverySecond
+  pipeline_->set_load_shedding(fraction > kQueueFraction           ? LoadShedding::kEveryFourth
+                               : fraction > kIntegrationFraction   ? LoadShedding::kEverySecond
                                : fraction > kSparseThermalFraction ? LoadShedding::kSparseThermal
                                : fraction > kHalfThermalFraction   ? LoadShedding::kHalfThermal
                                                                    : LoadShedding::kNone);
