@@ -181,7 +181,8 @@ class Refiner {
     return RefineWithDrift(alignment, level.points, PartOf(progress, 0.4, 1.0));
   }
 
-  /// After the last level, whose images are sharp.
+  /// After the last level, whose images are sharp. By its influence they differ from that found
+  /// last by what one level changes, which is taken to first order.
   Refinement Finish() {
     refinement_.held_out =
         alignment_->CompareHeldOut(refinement_.before, refinement_.after, kHeldOutPoints);
@@ -282,7 +283,7 @@ class Refiner {
   const ScanViews& views_;
   ThreadPool& pool_;
   const std::stop_token& stop_;
-  std::optional<TextureAlignment> alignment_;  ///< Of the present level.
+  std::optional<TextureAlignment> alignment_;  ///< The present level has it.
   Refinement refinement_;
 };
 

@@ -83,7 +83,6 @@ TEST(RigRefinementTest, PlacementIsFoundAgain) {
   EXPECT_GT(std::sqrt(squares), 0.2);
 }
 
-/// Without its two parameters the pose is 2.9 pixels off.
 TEST(RigRefinementTest, WhoIsToldToStopLooksNoFurther) {
   for (const int at_look : {0, 1, 3}) {
     ScanViews views = ScanOf({.seed = 1});
@@ -106,6 +105,7 @@ TEST(RigRefinementTest, WhoIsToldToStopLooksNoFurther) {
   }
 }
 
+/// Without its two parameters the pose is 2.9 pixels off.
 TEST(RigRefinementTest, InfluenceOfTheSceneIsFoundToo) {
   const Result<Refinement> refined = RefineWall(
       {.contrast_k = 40.0, .near_fraction = 0.05, .total_fraction = 0.03}, PlacementVector::Zero());

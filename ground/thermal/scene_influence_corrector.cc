@@ -92,9 +92,9 @@ void SceneInfluenceCorrector::SumNeighbourhoods(const Image<float>& cells, Image
     const float weight = weights_[static_cast<std::size_t>(std::abs(offset))];
     const int first = std::max(0, -offset), last = std::min(columns_, columns_ - offset);
     for (int y = 0; y < rows_; ++y) {
-      const float* const in = cells.Row(y).data() + offset;
+      const float* const in = cells.Row(y).data();
       float* const out = row_sums_.Row(y).data();
-      for (int x = first; x < last; ++x) out[x] += weight * in[x];
+      for (int x = first; x < last; ++x) out[x] += weight * in[x + offset];
     }
   }
   for (int y = 0; y < rows_; ++y) {

@@ -68,7 +68,7 @@ class SceneInfluenceCorrector {
   Image<float> coverage_;                  ///< Number of pixels with a value in each cell.
   Image<float> values_, near_;             ///< The unknowns: own temperatures and their near mean.
   Image<float> divisors_;                  ///< The sum of `coverage_` around each cell.
-  Image<float> covered_, row_sums_;        ///< Scratch of AverageNeighbourhoods.
+  Image<float> covered_, row_sums_;        ///< Scratch of SumNeighbourhoods and its caller.
   std::vector<CellInterpolation> across_;  ///< By column of pixels.
   std::vector<float> near_row_;            ///< By column of cells, for one row of pixels.
 };

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr unsigned kHistories =
     testing::kAddressSanitizer || testing::kThreadSanitizer ? 300 : 10'000;
-constexpr unsigned kParts = 2;  ///< Of the histories; each may have a processor of its own.
+constexpr unsigned kParts = 2;  ///< These may run at the same time.
 constexpr const char* kRig = "rig7";
 constexpr Nanoseconds kStep = 20ms;
 constexpr std::array<Nanoseconds, 2> kPeriods = {100ms, 80ms};  // By Sensor.
