@@ -56,12 +56,15 @@ run() {
     tail -n 1 >>"$out/live_$1.txt"
 }
 
+load=
+trap '[ -z "$load" ] || kill "$load" 2>/dev/null || true' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 run alone
-stress-ng --cpu 1 --cpu-load 50 --quiet &
+stress-ng --cpu 1 --cpu-load 50 --timeout "$((10 * seconds))" --quiet &
 load=$!
-trap 'kill "$load" 2>/dev/null || true' EXIT
 run beside_load
-kill "$load" 2>/dev/null || true
+kill -0 "$load" 2>/dev/null || { echo "bench_live: stress-ng has left: the second scan was not beside a load" >&2; exit 70; }
 
 cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 cat <<TEXT
@@ -86,7 +89,7 @@ awk '
     show("  not integrated to keep up", "", "frames.depth.not_integrated_behind")
     show("thermal frames received", "", "frames.thermal.in")
     show("  left out to keep up", "", "frames.thermal.left_out_by_reason.behind")
-    show("  longest time without one", "s", "frames.thermal.longest_pause_s")
+    show("  longest time without one for that reason", "s", "frames.thermal.longest_pause_s")
     show("waiting from arrival to its turn, median", "ms", "link.waiting.p50_ms")
     show("waiting from arrival to its turn, 99 %", "ms", "link.waiting.p99_ms")
     show("depth capture to advice on the edge, median", "ms", "link.feedback.latency_p50_ms")
