@@ -32,14 +32,14 @@ mkdir -p "$out"
 # A JSON file, two spaces a level, as lines "path.to.key value".
 flatten() {
   awk '{
-    level = match($0, /[^ ]/) / 2
+    level = int(match($0, /[^ ]/) / 2)
     if (!match($0, /"[^"]*": /)) next
-    key[int(level)] = substr($0, RSTART + 1, RLENGTH - 4)
+    key[level] = substr($0, RSTART + 1, RLENGTH - 4)
     value = substr($0, RSTART + RLENGTH)
     sub(/,$/, "", value)
     if (value == "{" || value == "[") next
     path = key[1]
-    for (i = 2; i <= int(level); ++i) path = path "." key[i]
+    for (i = 2; i <= level; ++i) path = path "." key[i]
     print path, value
   }' "$1"
 }
