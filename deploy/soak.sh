@@ -6,6 +6,8 @@
 #   deploy/soak.sh                  ten minutes, outages of up to a minute
 #   deploy/soak.sh 2h               as long (30s, 45m, 2h)
 #   deploy/soak.sh 2h --outage 10m  outages of up to ten minutes
+#   deploy/soak.sh 2h --only link   nobody is killed: how much memory a long life takes
+#   deploy/soak.sh 2h --only kills  the link is as good as it gets: 2 % lost, 20 ms each way
 #   deploy/soak.sh 2h --seed 7      other random events; the same seed does the same to the link
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -25,10 +27,15 @@ seconds() {
 duration=10m
 outage=1m
 seed=1
+only=
 while [ $# -gt 0 ]; do
   case "$1" in
     -h | --help) usage; exit 0 ;;
     --outage) outage=${2:?"--outage needs a time"}; shift ;;
+    --only)
+      only=${2:?"--only needs link or kills"}
+      [[ $only =~ ^(link|kills)$ ]] || { echo "soak: --only '$only' is neither link nor kills" >&2; exit 64; }
+      shift ;;
     --seed) seed=${2:?"--seed needs a number"}; shift ;;
     -*) usage >&2; exit 64 ;;
     *) duration=$1 ;;
@@ -38,7 +45,8 @@ done
 ISOTHERM_SOAK_S=$(seconds "$duration")
 ISOTHERM_SOAK_OUTAGE_S=$(seconds "$outage")
 ISOTHERM_SOAK_SEED=$seed
-export ISOTHERM_SOAK_S ISOTHERM_SOAK_OUTAGE_S ISOTHERM_SOAK_SEED
+ISOTHERM_SOAK_ONLY=$only
+export ISOTHERM_SOAK_ONLY ISOTHERM_SOAK_S ISOTHERM_SOAK_OUTAGE_S ISOTHERM_SOAK_SEED
 
 deploy/install-deps.sh
 cmake --preset release >/dev/null

@@ -45,6 +45,11 @@ double FromEnvironment(const char* name, double otherwise) {
   return text != nullptr ? std::strtod(text, nullptr) : otherwise;
 }
 
+std::string TextFromEnvironment(const char* name) {
+  const char* const text = std::getenv(name);
+  return text != nullptr ? text : "";
+}
+
 bool ByNumber(const StoredFrame& a, const StoredFrame& b) {
   return a.frame_number < b.frame_number;
 }
@@ -153,7 +158,7 @@ class LinkSoakTest : public ::testing::Test {
       bool kills_edge, kills_ground;
     };
     constexpr double kNarrow_bit_s = 0.6e6;  // Half of what the small scan takes.
-    const std::array<Event, 7> events = {{
+    const std::array<Event, 8> events = {{
         {"outage", {.loss = 1.0}, longest_outage_s_, false, false},
         {"a fifth lost", {.delay = 20ms, .loss = 0.2}, 10.0, false, false},
         {"bursts", {.delay = 20ms, .loss = 0.1, .burst = 200ms}, 10.0, false, false},
@@ -165,25 +170,31 @@ class LinkSoakTest : public ::testing::Test {
         {"narrow", {.delay = 20ms, .loss = 0.02, .rate_bit_s = kNarrow_bit_s}, 10.0, false, false},
         {"edge killed", kUsual, 1.0, true, false},
         {"ground killed", kUsual, 1.0, false, true},
+        {"both killed", kUsual, 1.0, true, true},
     }};
     // Each before one comes again, so that a short run has them all.
     if (to_come_.empty()) {
-      for (std::size_t i = 0; i < events.size(); ++i) to_come_.push_back(i);
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        const bool kills = events.at(i).kills_edge || events.at(i).kills_ground;
+        if (only_.empty() || only_ == (kills ? "kills" : "link")) to_come_.push_back(i);
+      }
       std::ranges::shuffle(to_come_, random_);
     }
+    ASSERT_FALSE(to_come_.empty()) << "ISOTHERM_SOAK_ONLY is neither link nor kills";
     const Event& event = events.at(to_come_.back());
     to_come_.pop_back();
     const double duration_s = Uniform(1.0, std::max(1.0, event.longest_s));
+    kills_ += event.kills_edge + event.kills_ground;
     std::cout << static_cast<int>(Elapsed_s()) << " s: " << event.name << " for "
               << static_cast<int>(duration_s) << " s" << std::endl;
     link_->network().SetBoth(event.path);
-    if (event.kills_edge) {
-      Kill(*edge_);
-      ASSERT_NO_FATAL_FAILURE(StartEdge(kEndless));
-    }
+    if (event.kills_edge) Kill(*edge_);
     if (event.kills_ground) {
       Kill(*ground_);
       ASSERT_NO_FATAL_FAILURE(StartGround());
+    }
+    if (event.kills_edge) {
+      ASSERT_NO_FATAL_FAILURE(StartEdge(kEndless));
     }
     Pass(duration_s);
     link_->network().SetBoth(kUsual);
@@ -213,6 +224,7 @@ class LinkSoakTest : public ::testing::Test {
       EXPECT_TRUE(std::ranges::adjacent_find(*got, {}, &StoredFrame::frame_number) == got->end());
       EXPECT_EQ(NumberAt(stats, {"link", name, "missing"}), 0.0);
     }
+    std::printf("killed %d times\n", kills_);
     std::printf("edge: %d processes, at most %.0f MB, +%.1f %% after its first minute\n", edges_,
                 1e-3 * static_cast<double>(edge_memory_.largest_kb()), 100 * edge_memory_.growth());
     std::printf("ground: %d processes, at most %.0f MB, +%.1f %% after its first minute\n",
@@ -227,6 +239,8 @@ class LinkSoakTest : public ::testing::Test {
 
   const double duration_s_ = FromEnvironment("ISOTHERM_SOAK_S", 60.0);
   const double longest_outage_s_ = FromEnvironment("ISOTHERM_SOAK_OUTAGE_S", 12.0);
+  /// "kills" or "link": which events there are; empty: all.
+  const std::string only_ = TextFromEnvironment("ISOTHERM_SOAK_ONLY");
   const std::uint64_t seed_ =
       static_cast<std::uint64_t>(FromEnvironment("ISOTHERM_SOAK_SEED", 1.0));
   std::mt19937_64 random_{seed_};
@@ -237,7 +251,7 @@ class LinkSoakTest : public ::testing::Test {
   std::filesystem::path results_;
   std::unique_ptr<EmulatedLink> link_;
   std::optional<Process> edge_, ground_;
-  int edges_ = 0, grounds_ = 0;
+  int edges_ = 0, grounds_ = 0, kills_ = 0;
   std::vector<std::size_t> to_come_;
   MemoryWatch edge_memory_, ground_memory_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
