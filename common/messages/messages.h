@@ -98,7 +98,7 @@ enum class ScanState : std::uint8_t {
 /// Says what happens when the link or the ground is slower than the cameras.
 enum class PublishPolicy : std::uint8_t {
   kLive = 0,      ///< Never wait: latency is bounded and what is left behind is counted.
-  kLossless = 1,  ///< Wait for receipts, so that every frame arrives.
+  kLossless = 1,  ///< Wait for receipts, so that frames arrive in order.
 };
 
 /// Says who orders corrections of the thermal camera.

@@ -1,6 +1,7 @@
 #include "common/transport/endpoints.h"
 
 #include <dds/dds.h>
+#include <dds/ddsc/dds_statistics.h>
 #include <fmt/format.h>
 #include <isotherm_control.h>
 #include <isotherm_frames.h>
@@ -121,10 +122,30 @@ Status Writer<Message>::Write(std::string_view edge_id, const Message& message) 
 }
 
 template <typename Message>
+Status Writer<Message>::ForgetPast(std::string_view edge_id) {
+  WireSample<Message> key;
+  CopyText(edge_id, key.wire.edge_id);
+  const dds_return_t code = dds_unregister_instance(writer_.value(), &key.wire);
+  return code == DDS_RETCODE_OK || code == DDS_RETCODE_PRECONDITION_NOT_MET
+             ? OkStatus()  // There was none.
+             : Internal(
+                   fmt::format("{}: {}", TopicName(TopicOf<Message>::kId), dds_strretcode(code)));
+}
+
+template <typename Message>
 int Writer<Message>::matched_readers() const {
   dds_publication_matched_status_t status{};
   if (dds_get_publication_matched_status(writer_.value(), &status) != DDS_RETCODE_OK) return 0;
   return static_cast<int>(status.current_count);
+}
+
+template <typename Message>
+std::uint64_t Writer<Message>::repeated_bytes() const {
+  const std::unique_ptr<dds_statistics, decltype(&dds_delete_statistics)> statistics(
+      dds_create_statistics(writer_.value()), &dds_delete_statistics);
+  if (!statistics) return 0;
+  const dds_stat_keyvalue* bytes = dds_lookup_statistic(statistics.get(), "rexmit_bytes");
+  return bytes != nullptr && bytes->kind == DDS_STAT_KIND_UINT64 ? bytes->u.u64 : 0;
 }
 
 template <typename Message>

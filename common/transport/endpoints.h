@@ -32,10 +32,14 @@ class Writer {
   /// blocking time (see qos.cc). kUnavailable if the middleware's buffer stayed full;
   /// kInvalidArgument if the message is too large.
   Status Write(std::string_view edge_id, const Message& message);
+  /// Keeps nothing any more of what was written about `edge_id` for readers that come later.
+  Status ForgetPast(std::string_view edge_id);
   /// Readers of this topic that are there now.
   int matched_readers() const;
   /// Returns whether `peer` has such a reader, so that it gets what is written from now on.
   bool Reaches(PeerHandle peer) const;
+  /// Bytes that were sent again so far because a reader had not got them.
+  std::uint64_t repeated_bytes() const;
   /// Waits until all readers have acknowledged everything written. False after `timeout`.
   bool WaitForAcknowledgments(Nanoseconds timeout) const;
 

@@ -38,6 +38,33 @@ TEST_F(EndpointsTest, LateJoinerGetsTheRigAndTheNewestFrames) {
   EXPECT_EQ(first->message.header.frame_number, 100U - kFrameHistory);
 }
 
+TEST_F(EndpointsTest, WhatIsForgottenIsNotKeptForALateJoiner) {
+  Reader<EncodedDepthFrame> early;
+  ASSERT_TRUE(early.Open(*ground_, &refusals_).ok());
+  Writer<EncodedDepthFrame> writer;
+  ASSERT_TRUE(writer.Open(*edge_).ok());
+  EXPECT_TRUE(writer.ForgetPast("edge-1").ok()) << "nothing yet";
+  auto frame = Good<EncodedDepthFrame>();
+  const auto write = [&](std::uint64_t number) {
+    frame.header.frame_number = number;
+    ASSERT_TRUE(writer.Write("edge-1", frame).ok());
+  };
+  for (std::uint64_t number = 0; number < 5; ++number) write(number);
+  ASSERT_TRUE(writer.ForgetPast("edge-1").ok());
+  Reader<EncodedDepthFrame> late;
+  ASSERT_TRUE(late.Open(*ground_, &refusals_).ok());
+  AwaitMatch(writer, 2);
+  write(5);
+  const auto first = TakeOne(late);
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(first->message.header.frame_number, 5U);
+  for (std::uint64_t number = 0; number < 6; ++number) {
+    const auto next = TakeOne(early);
+    ASSERT_TRUE(next.has_value());
+    EXPECT_EQ(next->message.header.frame_number, number) << "who was there gets all";
+  }
+}
+
 TEST_F(EndpointsTest, WakeEndsTheWaitAtOnce) {
   WaitSet waiter;
   ASSERT_TRUE(waiter.Open(*ground_).ok());

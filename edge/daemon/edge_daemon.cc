@@ -140,7 +140,11 @@ Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
   publisher.edge_id = options.link().edge_id();
   publisher.software_version = ISOTHERM_VERSION;
   publisher.pieces = options.link().expert().pieces();
-  const bool lossless = options.link().policy() == LOSSLESS || options.source().rate() == 0.0;
+  const bool is_paced = options.source().rate() != 0.0;
+  const bool is_backfilled =
+      options.spool().record() != "off" && options.link().expert().backfill_hz() > 0.0;
+  publisher.leaves_whole_frames = publisher.pieces && is_paced && is_backfilled;
+  const bool lossless = options.link().policy() == LOSSLESS || !is_paced;
   publisher.policy = lossless ? PublishPolicy::kLossless : PublishPolicy::kLive;
   return Publisher::Create(participant, clock, publisher);
 }

@@ -99,6 +99,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
     depth_.OnReceipt(receipt.depth, now);
     thermal_.OnReceipt(receipt.thermal, now);
     pace_.OnReceipt(receipt, now);
+    repairs_.OnReceipt(now);
     arrival_.OnReceipt(sender, receipt, now);
   }
   changed_.notify_all();
@@ -167,14 +168,22 @@ void DdsPublisher::LookAtWays(SteadyTime now) {
   const bool sent_pieces = SendsPieces();
   reads_pieces_ =
       grounds_.HasFollower([this](PeerHandle peer) { return ends_.pieces.Reaches(peer); });
+  LookAtRepairs(now);
   if (SendsPieces() && !sent_pieces) {
-    LOG(Publisher, Info) << "frames go in pieces, with parity";
+    LOG(Publisher, Info) << (is_link_poor_ ? "the link loses too much for whole frames: " : "")
+                         << "frames go in pieces, with parity";
   }
-  const bool waits = policy_ == PublishPolicy::kLossless &&
-                     !(depth_.window().HasRoom() && thermal_.window().HasRoom());
-  arrival_.Look({depth_.counts().next_frame_number, thermal_.counts().next_frame_number}, waits,
-                now);
+  const bool has_room = depth_.window().HasRoom() && thermal_.window().HasRoom();
+  arrival_.Look({depth_.counts().next_frame_number, thermal_.counts().next_frame_number},
+                WaitsForGround() && !has_room, now);
   grounds_.LookAtWays(now, announced, arrival_.unheard_by());
+}
+
+void DdsPublisher::LookAtRepairs(SteadyTime now) {
+  const bool is_poor = repairs_.Look(ends_.depth.repeated_bytes() + ends_.thermal.repeated_bytes(),
+                                     pace_.quickest(), pace_.is_late(now), now);
+  if (!is_poor || !options_.leaves_whole_frames || !reads_pieces_ || !WaitsForGround()) return;
+  is_link_poor_ = true;
 }
 
 bool DdsPublisher::IsGroundReady() const {
@@ -200,6 +209,8 @@ Status DdsPublisher::BeginSession(const RigDescription& rig, const SessionBefore
     depth_.BeginSession(before.depth);
     thermal_.BeginSession(before.thermal);
     pace_.BeginSession();
+    repairs_.BeginSession();
+    is_link_poor_ = false;
     pieces_.BeginSession();
     arrival_.BeginSession();
     flow_waits_ = flow_timeouts_ = 0;
@@ -214,7 +225,7 @@ Status DdsPublisher::Announce(const RigDescription& rig) {
 }
 
 bool DdsPublisher::TakesNext(Sensor sensor, std::size_t newer) {
-  if (policy_ != PublishPolicy::kLive) return true;
+  if (WaitsForGround()) return true;
   if (SendsPieces()) return pieces_.TakesNext(sensor, newer);
   // The middleware would keep the newest for who comes, and send them all at once over a radio.
   if (options_.pieces && ends_.depth.matched_readers() + ends_.thermal.matched_readers() == 0) {
@@ -230,7 +241,7 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stre
   MutexLock lock(mutex_);
   bool waited = false;
   // An onlooker that sends no receipts must not stop the scan.
-  while (policy_ == PublishPolicy::kLossless && !stream->window().HasRoom() &&
+  while (WaitsForGround() && !stream->window().HasRoom() &&
          MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested() && !stop_budget_.MayWait(now)) break;
@@ -246,10 +257,6 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stre
   if (waited) ++flow_waits_;
 }
 
-bool DdsPublisher::SendsPieces() const {
-  return policy_ == PublishPolicy::kLive && options_.pieces && reads_pieces_;
-}
-
 template <typename Frame>
 Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
                                   const std::stop_token& stop) {
@@ -258,17 +265,24 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Out
     return FailedPrecondition(
         fmt::format("frame of session {} without BeginSession", frame.header.session));
   }
-  if (policy_ == PublishPolicy::kLossless) WaitForRoom(*writer, stream, stop);
+  if (WaitsForGround()) WaitForRoom(*writer, stream, stop);
   if (stop.stop_requested() && !HasTimeLeft()) {
     MutexLock lock(mutex_);
     stream->OnFailed();
     return NoTimeLeft();
   }
+  const bool in_pieces = SendsPieces();
+  bool goes_over = false;
   {
     MutexLock lock(mutex_);
     stream->sent().Note(number, frame.header.capture_time);
+    goes_over = stream->GoesOverToPieces(in_pieces);
   }
-  const bool in_pieces = SendsPieces();
+  // A ground that comes later is not to begin with what went whole long ago.
+  const Status forgotten = goes_over ? writer->ForgetPast(options_.edge_id) : OkStatus();
+  if (!forgotten.ok()) {
+    LOG(Publisher, Warning) << forgotten.message();
+  }
   const Status written = in_pieces ? pieces_.Send(frame, PiecePriority::kLive, stop)
                                    : writer->Write(options_.edge_id, frame);
   MutexLock lock(mutex_);
@@ -278,7 +292,9 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Out
   }
   stream->OnPublished(number);
   sent_at_ = clock_.SteadyNow();
-  if (!in_pieces) pace_.OnSent(SensorOf(frame), number, clock_.SteadyNow());
+  if (in_pieces) return OkStatus();
+  pace_.OnSent(SensorOf(frame), number, sent_at_);
+  repairs_.OnSent(frame.image.payload.size(), sent_at_);
   return OkStatus();
 }
 
@@ -312,21 +328,14 @@ Status DdsPublisher::Publish(EdgeStatus status) {
   {
     MutexLock lock(mutex_);
     if (session_) status.session = *session_;
-    status.depth.published = depth_.counts().published;
-    status.depth.next_frame_number = depth_.counts().next_frame_number;
-    status.thermal.published = thermal_.counts().published;
-    status.thermal.next_frame_number = thermal_.counts().next_frame_number;
+    depth_.Tell(&status.depth);
+    thermal_.Tell(&status.thermal);
     status.clock_echo = clock_echo_;
     status.served_ground = grounds_.served();
   }
-  status.publish_policy = policy_;
+  status.publish_policy = WaitsForGround() ? PublishPolicy::kLossless : PublishPolicy::kLive;
   if (status.clock_echo) status.clock_echo->sent = clock_.Now();
   return ends_.status.Write(options_.edge_id, status);
-}
-
-bool DdsPublisher::HasNobodyToWaitFor() const {
-  MutexLock lock(mutex_);
-  return !IsAwaited(ends_.depth) && !IsAwaited(ends_.thermal);
 }
 
 bool DdsPublisher::IsHandled() const {
@@ -374,8 +383,8 @@ PublisherStats DdsPublisher::stats() const {
       .takes_backfill = grounds_.HasFollower([this](PeerHandle peer) {
         return ends_.backfill_depth.Reaches(peer) && ends_.backfill_thermal.Reaches(peer);
       }),
-      .leaves_frames = policy_ == PublishPolicy::kLive &&
-                       (SendsPieces() ? pieces_.leaves_frames() : pace_.leaves_frames()),
+      .leaves_frames =
+          !WaitsForGround() && (SendsPieces() ? pieces_.leaves_frames() : pace_.leaves_frames()),
       .ground_problem = grounds_.Problem(now)};
 }
 

@@ -21,6 +21,7 @@
 #include "edge/publisher/outgoing_stream.h"
 #include "edge/publisher/piece_sender.h"
 #include "edge/publisher/publisher.h"
+#include "edge/publisher/repair_watch.h"
 #include "edge/publisher/stop_budget.h"
 
 namespace isotherm {
@@ -65,7 +66,11 @@ class DdsPublisher final : public Publisher {
     return ends_.result.Write(options_.edge_id, result);
   }
   bool Drain(Nanoseconds timeout) override;
-  void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
+  void SetPolicy(PublishPolicy policy) override {
+    MutexLock lock(mutex_);
+    policy_ = policy;
+    is_link_poor_ = false;
+  }
   PublisherStats stats() const override;
   std::optional<Receipt> receipt() const override { return receipt_.Get(); }
   SessionBefore so_far() const override {
@@ -81,9 +86,12 @@ class DdsPublisher final : public Publisher {
   template <typename Frame>
   Status PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
                       const std::stop_token& stop);
+  /// Returns whether each frame waits for room in the flow window, as with kLossless over a link
+  /// that carries whole frames.
+  bool WaitsForGround() const { return policy_ == PublishPolicy::kLossless && !is_link_poor_; }
   /// Returns whether frames go in pieces: nothing of these is sent again, and a ground is there
   /// that reads them.
-  bool SendsPieces() const;
+  bool SendsPieces() const { return !WaitsForGround() && options_.pieces && reads_pieces_; }
   template <typename Frame>
   Result<bool> BackfillFrame(const Frame& frame, int tries, Writer<Backfilled<Frame>>* writer,
                              OutgoingStream* stream, const std::stop_token& stop);
@@ -104,6 +112,8 @@ class DdsPublisher final : public Publisher {
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
   void LookAtWays(SteadyTime now);
+  /// Goes over to pieces, for this session, if the lossless policy finds that it must.
+  void LookAtRepairs(SteadyTime now) REQUIRES(mutex_);
   /// Says why the ground's word about this session cannot be true.
   std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
   std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
@@ -127,7 +137,10 @@ class DdsPublisher final : public Publisher {
     if (grounds_.IsRefused(now)) return false;
     return stream->HasNewReader(writer.matched_readers(), now) || IsAwaited(writer);
   }
-  bool HasNobodyToWaitFor() const;
+  bool HasNobodyToWaitFor() const {
+    MutexLock lock(mutex_);
+    return !IsAwaited(ends_.depth) && !IsAwaited(ends_.thermal);
+  }
   bool IsHandled() const;
 
   const Clock& clock_;
@@ -141,12 +154,14 @@ class DdsPublisher final : public Publisher {
   LatestValue<Receipt> receipt_;
   std::atomic<PublishPolicy> policy_;
   std::atomic<bool> reads_pieces_{false};  // The ground that follows this rig.
+  std::atomic<bool> is_link_poor_{false};  // Whole frames do not get along, in this session.
   SteadyTime ways_due_{};                  // Of the thread in Run().
 
   mutable Mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<std::uint64_t> session_ GUARDED_BY(mutex_);
   LivePace pace_ GUARDED_BY(mutex_);
+  RepairWatch repairs_ GUARDED_BY(mutex_);
   ArrivalWatch arrival_ GUARDED_BY(mutex_);
   OutgoingStream depth_ GUARDED_BY(mutex_);
   OutgoingStream thermal_ GUARDED_BY(mutex_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,13 @@ class LivePace {
   int stride(Sensor sensor) const { return kSteps.at(step_).at(static_cast<std::size_t>(sensor)); }
   /// Returns whether all frames are sent.
   bool is_full_rate() const { return step_ == 0; }
+  /// Returns how long a frame and its receipt took at the quickest of late; 0: not known.
+  Nanoseconds quickest() const {
+    const Nanoseconds quickest = std::min(quickest_[0], quickest_[1]);
+    return quickest == Nanoseconds::max() ? Nanoseconds(0) : quickest;
+  }
+  /// Returns whether a frame takes longer than its way explains.
+  bool is_late(SteadyTime now) const { return Delay(now) > kFullDelay; }
   /// Returns whether frames are left, if it is asked at all.
   bool leaves_frames() const { return is_asked_ && !is_full_rate(); }
 

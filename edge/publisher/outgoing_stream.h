@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "common/messages/frame_number_set.h"
+#include "common/messages/messages.h"
 #include "common/time/time_types.h"
 #include "edge/publisher/flow_window.h"
 #include "edge/publisher/published_stream.h"
@@ -44,6 +46,11 @@ class OutgoingStream {
     counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
   }
   void OnFailed() { ++counts_.failed; }
+  /// Enters how the next frame goes. Returns whether those before went whole, which the middleware
+  /// keeps for readers that come later, and this one does not.
+  bool GoesOverToPieces(bool in_pieces) {
+    return std::exchange(went_whole_, !in_pieces) && in_pieces;
+  }
   /// Enters what the ground says, once sent() has found that it can be true.
   void OnReceipt(const StreamReceipt& receipt, SteadyTime now) {
     window_.OnReceipt(receipt.handled, now);
@@ -76,6 +83,10 @@ class OutgoingStream {
   /// From now on every reader counts as new: it may be the successor of one that has left.
   void ForgetReaders() { readers_ = 0; }
 
+  void Tell(StreamStatus* status) const {
+    status->published = counts_.published;
+    status->next_frame_number = counts_.next_frame_number;
+  }
   const StreamPublished& counts() const { return counts_; }
   FlowWindow& window() { return window_; }
   PublishedStream& sent() { return sent_; }
@@ -93,6 +104,7 @@ class OutgoingStream {
   FrameNumberSet published_;
   FlowWindow window_;
   PublishedStream sent_;
+  bool went_whole_ = false;      ///< The newest frame.
   int readers_ = 0;              ///< When last looked at.
   SteadyTime reader_came_at_{};  ///< The newest of them.
 };

@@ -15,6 +15,10 @@ struct PublisherOptions {
   PublishPolicy policy = PublishPolicy::kLive;
   /// With kLive: frames go in pieces, if the ground that follows this rig reads them.
   bool pieces = true;
+  /// With kLossless: over a link on which whole frames do not get along (RepairWatch) they go as
+  /// with kLive, and in pieces, until the session ends. Right if frames come at a camera's pace,
+  /// and what gets lost is sent again from a recording.
+  bool leaves_whole_frames = false;
   /// With kLossless: frames of one stream that may be under way beyond what the ground has handled.
   /// Larger: faster replay, more memory on both sides. 1..kMaxFlowWindowFrames (qos.h), so that no
   /// history overflows.

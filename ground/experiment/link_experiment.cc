@@ -81,6 +81,8 @@ std::vector<Link> Links() {
     }
   }
   // The controls.
+  links.push_back(Whole(Lossy(kLossless, kFarLoss)));
+  links.push_back(Whole(Narrow(kLossless, kNarrow_mbit_s)));
   links.push_back(Whole(Lossy(kLive, kFarLoss)));
   links.push_back(Whole(Narrow(kLive, kVeryNarrow_mbit_s)));
   Link without = Narrow(kLive, kNarrow_mbit_s);
@@ -139,7 +141,7 @@ std::vector<Requirement> RequirementsOf(const ExperimentTable& table,
                                         const std::vector<Link>& links) {
   using enum Requirement::Sense;
   const Link& without = links.back();
-  const Link far = Lossy(kLive, kFarLoss);
+  const Link far = Lossy(kLive, kFarLoss), far_lossless = Lossy(kLossless, kFarLoss);
   const Link very_narrow = Narrow(kLive, kVeryNarrow_mbit_s);
   const Requirement missing{"frames that the ground lacks in the end, all links",
                             WorstOf(table, links, kMissing), kAtMost, 0.0, ""};
@@ -148,17 +150,22 @@ std::vector<Requirement> RequirementsOf(const ExperimentTable& table,
       ValueOf(table, Narrow(kLive, kNarrow_mbit_s), kAdviceMedian), kAtMost, 500.0, "ms"};
   const Requirement lacking{"most that the ground lacks at once, " + NameOf(far),
                             ValueOf(table, far, kMostLacking), kAtMost, 2.0, "s"};
+  const Requirement lacking_lossless{"most that the ground lacks at once, " + NameOf(far_lossless),
+                                     ValueOf(table, far_lossless, kMostLacking), kAtMost, 2.0, "s"};
   const Requirement oldest{"99 % of advice is younger than, " + NameOf(very_narrow),
                            ValueOf(table, very_narrow, kAdviceWorst), kAtMost, 1'000.0, "ms"};
-  const double lossless_ms = ValueOf(table, Narrow(kLossless, kNarrow_mbit_s), kAdviceMedian);
+  const double whole_ms = ValueOf(table, Whole(Narrow(kLossless, kNarrow_mbit_s)), kAdviceMedian);
   return {
       missing,
       NegativeControl(missing, "the same where nothing is sent again",
                       ValueOf(table, without, kMissing)),
       advice,
-      NegativeControl(advice, "the same, LOSSLESS", lossless_ms),
+      NegativeControl(advice, "the same, LOSSLESS, whole frames", whole_ms),
       lacking,
       NegativeControl(lacking, "the same, whole frames", ValueOf(table, Whole(far), kMostLacking)),
+      lacking_lossless,
+      NegativeControl(lacking_lossless, "the same, whole frames",
+                      ValueOf(table, Whole(far_lossless), kMostLacking)),
       oldest,
       NegativeControl(oldest, "the same, whole frames",
                       ValueOf(table, Whole(very_narrow), kAdviceWorst)),

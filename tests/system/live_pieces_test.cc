@@ -16,6 +16,8 @@ namespace isotherm::system_test {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr int kScan_s = 8;
 constexpr PathProperties kFar{.delay = 20ms, .loss = 0.1};
@@ -30,8 +32,9 @@ class LivePiecesTest : public ::testing::Test {
     WriteSmallRig(rig_, 3);
   }
 
-  /// Returns the counters of the link in the ground's stats.json, of a scan with the live policy.
-  nlohmann::json Scan(const std::string& pieces) {
+  /// Returns the counters of the link in the ground's stats.json, of a scan. Sets `edge_log_`.
+  nlohmann::json Scan(const std::string& pieces, const std::string& policy = "LIVE",
+                      const std::filesystem::path& scan = {}) {
     link_->network().SetBoth(kFar);
     const std::filesystem::path output = folder_.path() / ("ground-" + pieces);
     std::vector<std::string> arguments = {"--output", output, "--once"};
@@ -41,12 +44,12 @@ class LivePiecesTest : public ::testing::Test {
     EXPECT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
     Process edge(link_->On(
         NetworkEnd::kEdge, EdgeDaemon(),
-        {"--recording", scan_, "--rig", rig_, "--record",
+        {"--recording", scan.empty() ? scan_ : scan, "--rig", rig_, "--record",
          folder_.path() / ("edge-" + pieces + ".mcap"), "--wait-for-ground", "--exit-at-end",
          "--rate", "1", "--set", "source.loops=" + std::to_string(kScan_s), "--set",
-         "link.policy=LIVE", "--set", "link.expert.pieces=" + pieces}));
+         "link.policy=" + policy, "--set", "link.expert.pieces=" + pieces}));
     EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
-    EXPECT_EQ(edge.output().find("frames go in pieces") != std::string::npos, pieces == "true");
+    edge_log_ = edge.output();
     EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
     return nlohmann::json::parse(std::ifstream(output / "stats.json")).at("link");
   }
@@ -55,10 +58,12 @@ class LivePiecesTest : public ::testing::Test {
   const std::filesystem::path scan_ = folder_.path() / "source.mcap";
   const std::filesystem::path rig_ = folder_.path() / "rig.textproto";
   std::unique_ptr<EmulatedLink> link_;
+  std::string edge_log_;
 };
 
 TEST_F(LivePiecesTest, F27WhatGetsLostOfAFrameIsThereAtOnce) {
   const nlohmann::json pieces = Scan("true");
+  EXPECT_THAT(edge_log_, HasSubstr("frames go in pieces"));
   for (const char* stream : {"depth", "thermal"}) {
     const nlohmann::json& counters = pieces.at(stream);
     EXPECT_EQ(counters.at("missing"), 0) << counters;
@@ -71,7 +76,18 @@ TEST_F(LivePiecesTest, F27WhatGetsLostOfAFrameIsThereAtOnce) {
 
 TEST_F(LivePiecesTest, WholeFramesGoOnRequest) {
   const nlohmann::json whole = Scan("false");
+  EXPECT_THAT(edge_log_, Not(HasSubstr("frames go in pieces")));
   for (const char* stream : {"depth", "thermal"}) EXPECT_EQ(whole.at(stream).at("missing"), 0);
+}
+
+TEST_F(LivePiecesTest, F27WhereRepairsHoldFramesUpALosslessRigSendsPiecesToo) {
+  // Too large to be whole at the first try.
+  const std::filesystem::path large = folder_.path() / "large.mcap";
+  WriteSmallScan(large, 6);
+  WriteSmallRig(rig_, 6);
+  const nlohmann::json found = Scan("true", "LOSSLESS", large);
+  EXPECT_THAT(edge_log_, HasSubstr("the link loses too much for whole frames"));
+  for (const char* stream : {"depth", "thermal"}) EXPECT_EQ(found.at(stream).at("missing"), 0);
 }
 
 }  // namespace
