@@ -2,7 +2,8 @@
 # Builds the benchmarks, runs them all and prints one table: median, what it is compared with, and the ratio.
 #
 #   deploy/bench.sh                 codecs, kernels and the whole line; Open3D beside it where libopen3d-dev is installed
-#   deploy/bench.sh SCAN            also `isotherm reconstruct` and Open3D on a recording (.mcap) or a dataset folder
+#   deploy/bench.sh SCAN            also `isotherm reconstruct`, with its processor time by stage and thread, and Open3D on a
+#                                   recording (.mcap) or a dataset folder
 #   deploy/bench.sh SCAN "X Y Z"    the same in a volume with this corner, metres in the world of the scan's ground
 #                                   truth, which then gives the first pose
 #   deploy/bench.sh --plots         only what a frame costs against each thing that it may grow with, drawn into docs/images
@@ -15,7 +16,7 @@ set -eu
 
 plots=0
 case "${1-}" in
-  -h | --help) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
   --plots) plots=1; shift; [ $# = 0 ] || { echo "bench: --plots takes no scan" >&2; exit 64; } ;;
   -*) echo "usage: deploy/bench.sh [--plots | SCAN [\"X Y Z\"]]" >&2; exit 64 ;;
 esac
@@ -141,6 +142,10 @@ if [ "$plots" = 1 ]; then
   cat "$out/cost_benchmark.txt"
 else
   awk -v simd="$simd" -f deploy/bench_table.awk "$out/results.tsv"
+  if [ -n "$scan" ]; then
+    awk -f deploy/flatten_json.awk "$out/scan/stats.json" >"$out/reconstruct_stats.txt"
+    awk -v columns=reconstruct -f deploy/bench_processor.awk "$out/reconstruct_stats.txt"
+  fi
 fi
 
 # Above this the figures tell more about the others.
