@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "ground/pipeline/thermal_stage.h"
 
@@ -15,6 +16,23 @@ enum class LoadShedding : std::uint8_t {
   kEverySecond,    ///< So too, and every second depth frame is tracked but not integrated.
   kEveryFourth,    ///< ThermalThinning::kScarce, and three of four are not integrated.
 };
+
+/// "half_thermal", as in stats.json.
+inline std::string_view ToString(LoadShedding load_shedding) {
+  switch (load_shedding) {
+    case LoadShedding::kNone:
+      return "none";
+    case LoadShedding::kHalfThermal:
+      return "half_thermal";
+    case LoadShedding::kSparseThermal:
+      return "sparse_thermal";
+    case LoadShedding::kEverySecond:
+      return "every_second";
+    case LoadShedding::kEveryFourth:
+      break;
+  }
+  return "every_fourth";
+}
 
 /// The thermal frames that are left out then.
 inline ThermalThinning Thinning(LoadShedding load_shedding) {

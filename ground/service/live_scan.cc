@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -143,11 +144,13 @@ void LiveScan::KeepUp(CaptureTime queued_at) {
   constexpr double kQueueFraction = 1.5;
   const double fraction = ToSeconds(queued) / options_.live().expert().max_wait_s();
   is_behind_ = fraction > kHalfThermalFraction;
-  pipeline_->set_load_shedding(fraction > kQueueFraction           ? LoadShedding::kEveryFourth
-                               : fraction > kIntegrationFraction   ? LoadShedding::kEverySecond
-                               : fraction > kSparseThermalFraction ? LoadShedding::kSparseThermal
-                               : fraction > kHalfThermalFraction   ? LoadShedding::kHalfThermal
-                                                                   : LoadShedding::kNone);
+  const LoadShedding level = fraction > kQueueFraction           ? LoadShedding::kEveryFourth
+                             : fraction > kIntegrationFraction   ? LoadShedding::kEverySecond
+                             : fraction > kSparseThermalFraction ? LoadShedding::kSparseThermal
+                             : fraction > kHalfThermalFraction   ? LoadShedding::kHalfThermal
+                                                                 : LoadShedding::kNone;
+  pipeline_->set_load_shedding(level);
+  load_shedding_.Add(clock_.SteadyNow() - steady_begun_, level);
   if (fraction <= kIntegrationFraction || reported_behind_ || queued_at < begun_) return;
   reported_behind_ = true;
   LOG(Ground, Warning) << fmt::format(
@@ -210,6 +213,22 @@ Json LiveScan::DescribeConsole() const {
   Json json = DescribeStage(console_cost_->copying);
   json["copied_blocks"] = console_cost_->copied_blocks;
   json["largest_number_of_viewers"] = console_cost_->max_viewers;
+  return json;
+}
+
+Json LiveScan::DescribeLoadShedding() const {
+  const std::deque<LoadSheddingHistory::Change> changes = load_shedding_.Changes();
+  if (changes.empty()) return nullptr;
+  Json json;
+  // The wall clock's time relates the changes to what else this computer did.
+  json["begun_unix_s"] = ToSeconds(begun_.time_since_epoch());
+  json["until_s"] = ToSeconds(load_shedding_.last());
+  for (const LoadSheddingHistory::Change& change : changes) {
+    Json entry;
+    entry["since_s"] = ToSeconds(change.since);
+    entry["level"] = ToString(change.level);
+    json["changes"].push_back(std::move(entry));
+  }
   return json;
 }
 

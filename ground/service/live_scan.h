@@ -23,6 +23,7 @@
 #include "ground/json/json.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/load_shedding_history.h"
 #include "ground/service/scan_board.h"
 #include "ground/subscriber/received_frame.h"
 
@@ -69,6 +70,9 @@ class LiveScan {
   Json DescribeFeedback() const;
   /// Returns what the console has cost, as it goes into stats.json; null without one.
   Json DescribeConsole() const;
+  /// Returns when work was left out to keep up, as it goes into stats.json; null if it never could
+  /// be.
+  Json DescribeLoadShedding() const;
   /// To be called while no frame waits: lets the console go on.
   void WhileIdle();
   /// Returns whether WhileIdle has something to do.
@@ -124,6 +128,8 @@ class LiveScan {
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool reported_behind_ = false;
   const CaptureTime begun_ = clock_.Now();  ///< Frames that came before waited for the scan itself.
+  const SteadyTime steady_begun_ = clock_.SteadyNow();
+  LoadSheddingHistory load_shedding_;
   std::uint64_t shown_scan_ = 0;
   std::optional<ConsoleCost> console_cost_;  ///< After LeaveConsole.
   const ProcessorTimes processor_before_ = ReadProcessorTimes();

@@ -144,6 +144,22 @@ TEST_F(LiveScanTest, OnceCaughtUpAllIsDoneAgain) {
   EXPECT_EQ(counts().thermal_fused, 6U);  // The first, and from the one before frame 4 on.
 }
 
+TEST_F(LiveScanTest, ItSaysWhenWorkWasLeftOut) {
+  Start();
+  Run(0, 3, 120ms);
+  clock_.Advance(1s);
+  Run(4, 6, 10ms);
+  scan_->FinishFrames();
+  const Json json = scan_->DescribeLoadShedding();
+  EXPECT_DOUBLE_EQ(json.at("begun_unix_s").get<double>(), 1000.0);
+  EXPECT_DOUBLE_EQ(json.at("until_s").get<double>(), 1.51);
+  ASSERT_EQ(json.at("changes").size(), 2U) << JsonText(json);
+  EXPECT_EQ(json.at("changes").at(0).at("level"), "every_second");
+  EXPECT_DOUBLE_EQ(json.at("changes").at(0).at("since_s").get<double>(), 0.0);
+  EXPECT_EQ(json.at("changes").at(1).at("level"), "none");
+  EXPECT_DOUBLE_EQ(json.at("changes").at(1).at("since_s").get<double>(), 1.0);
+}
+
 TEST_F(LiveScanTest, WhatWaitsForTheOtherStreamIsNotBehind) {
   Start();
   Depth(0, 10ms);
@@ -186,6 +202,7 @@ TEST_F(LiveScanTest, ALongestWaitOfZeroNeverLeavesAnythingOut) {
   EXPECT_EQ(counts().depth_integrated, 7U);
   EXPECT_EQ(counts().depth_behind, 0U);
   EXPECT_EQ(counts().thermal_fused, 6U);
+  EXPECT_TRUE(scan_->DescribeLoadShedding().is_null());
 }
 
 TEST_F(LiveScanTest, FeedbackKeepsItsRateWhenFramesJitter) {

@@ -36,6 +36,8 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
   link["final"] = counters.ended;
   link["not_processed_at_stop"] = unprocessed;
   link["waiting"] = DescribeStage(scan.waiting());
+  if (Json load_shedding = scan.DescribeLoadShedding(); !load_shedding.is_null())
+    link["load_shedding"] = std::move(load_shedding);
   link["out_of_order_frames"] = scan.out_of_order();
   if (scan.odometry_poses_received() > 0) {
     link["external_odometry"]["received"] = scan.odometry_poses_received();
