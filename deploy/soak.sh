@@ -8,7 +8,8 @@
 #   deploy/soak.sh 2h --outage 10m  outages of up to ten minutes
 #   deploy/soak.sh 2h --only link   nobody is killed: how much memory a long life takes
 #   deploy/soak.sh 2h --only kills  the link is as good as it gets: 2 % lost, 20 ms each way
-#   deploy/soak.sh 2h --seed 7      other random events; the same seed does the same to the link
+#   deploy/soak.sh 2h --seed 7      other random events; the same seed does the same to the link. The first process of the rig
+#                                   has link.policy LOSSLESS with odd seeds and LIVE with even ones; each later one the other
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

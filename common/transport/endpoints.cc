@@ -126,10 +126,11 @@ Status Writer<Message>::ForgetPast(std::string_view edge_id) {
   WireSample<Message> key;
   CopyText(edge_id, key.wire.edge_id);
   const dds_return_t code = dds_unregister_instance(writer_.value(), &key.wire);
-  return code == DDS_RETCODE_OK || code == DDS_RETCODE_PRECONDITION_NOT_MET
-             ? OkStatus()  // There was none.
-             : Internal(
-                   fmt::format("{}: {}", TopicName(TopicOf<Message>::kId), dds_strretcode(code)));
+  // The second: there was none.
+  if (code == DDS_RETCODE_OK || code == DDS_RETCODE_PRECONDITION_NOT_MET) return OkStatus();
+  const std::string text =
+      fmt::format("{}: {}", TopicName(TopicOf<Message>::kId), dds_strretcode(code));
+  return code == DDS_RETCODE_TIMEOUT ? Unavailable(text) : Internal(text);
 }
 
 template <typename Message>

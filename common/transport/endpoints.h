@@ -32,7 +32,8 @@ class Writer {
   /// blocking time (see qos.cc). kUnavailable if the middleware's buffer stayed full;
   /// kInvalidArgument if the message is too large.
   Status Write(std::string_view edge_id, const Message& message);
-  /// Keeps nothing any more of what was written about `edge_id` for readers that come later.
+  /// Drops what the middleware keeps of `edge_id` for readers that come later; those that are there
+  /// still get it. May block as Write() does, and then fail with kUnavailable.
   Status ForgetPast(std::string_view edge_id);
   /// Readers of this topic that are there now.
   int matched_readers() const;

@@ -105,11 +105,6 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   changed_.notify_all();
 }
 
-std::optional<RefusalCause> DdsPublisher::RefusalOf(const Receipt& receipt) const {
-  if (const auto cause = depth_.sent().Check(receipt.depth)) return cause;
-  return thermal_.sent().Check(receipt.thermal);
-}
-
 void DdsPublisher::OnPieceReport(const Received<PieceReport>& received) {
   const PeerHandle sender = ends_.piece_reports.PeerOf(received.writer);
   {
@@ -140,13 +135,6 @@ void DdsPublisher::OnFeedback(const Received<Feedback>& received,
   } else if (handlers.feedback) {
     handlers.feedback(feedback, clock_.Now(), is_live);
   }
-}
-
-std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
-                                                    PeerHandle sender) const {
-  if (!grounds_.Knows(sender)) return RefusalCause::kNotTheGround;
-  if (feedback.session != session_) return RefusalCause::kOtherSession;
-  return depth_.sent().Check(feedback);
 }
 
 void DdsPublisher::LookForGround() {
@@ -180,9 +168,10 @@ void DdsPublisher::LookAtWays(SteadyTime now) {
 }
 
 void DdsPublisher::LookAtRepairs(SteadyTime now) {
+  if (!options_.pieces || !options_.leaves_whole_frames) return;
   const bool is_poor = repairs_.Look(ends_.depth.repeated_bytes() + ends_.thermal.repeated_bytes(),
                                      pace_.quickest(), pace_.is_late(now), now);
-  if (!is_poor || !options_.leaves_whole_frames || !reads_pieces_ || !WaitsForGround()) return;
+  if (!is_poor || !reads_pieces_ || !WaitsForGround()) return;
   is_link_poor_ = true;
 }
 
@@ -258,6 +247,19 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stre
 }
 
 template <typename Frame>
+void DdsPublisher::ForgetWholeFrames(Writer<Frame>* writer, OutgoingStream* stream) {
+  {
+    MutexLock lock(mutex_);
+    if (!stream->keeps_whole()) return;
+  }
+  // While some are under way the middleware may have no room for another message.
+  if (!writer->WaitForAcknowledgments(Nanoseconds(0))) return;
+  if (!writer->ForgetPast(options_.edge_id).ok()) return;
+  MutexLock lock(mutex_);
+  stream->OnForgotten();
+}
+
+template <typename Frame>
 Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
                                   const std::stop_token& stop) {
   const std::uint64_t number = frame.header.frame_number;
@@ -271,18 +273,12 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Out
     stream->OnFailed();
     return NoTimeLeft();
   }
-  const bool in_pieces = SendsPieces();
-  bool goes_over = false;
   {
     MutexLock lock(mutex_);
     stream->sent().Note(number, frame.header.capture_time);
-    goes_over = stream->GoesOverToPieces(in_pieces);
   }
-  // A ground that comes later is not to begin with what went whole long ago.
-  const Status forgotten = goes_over ? writer->ForgetPast(options_.edge_id) : OkStatus();
-  if (!forgotten.ok()) {
-    LOG(Publisher, Warning) << forgotten.message();
-  }
+  const bool in_pieces = SendsPieces();
+  if (in_pieces) ForgetWholeFrames(writer, stream);
   const Status written = in_pieces ? pieces_.Send(frame, PiecePriority::kLive, stop)
                                    : writer->Write(options_.edge_id, frame);
   MutexLock lock(mutex_);
@@ -293,6 +289,7 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Out
   stream->OnPublished(number);
   sent_at_ = clock_.SteadyNow();
   if (in_pieces) return OkStatus();
+  stream->OnWhole();
   pace_.OnSent(SensorOf(frame), number, sent_at_);
   repairs_.OnSent(frame.image.payload.size(), sent_at_);
   return OkStatus();
@@ -328,8 +325,8 @@ Status DdsPublisher::Publish(EdgeStatus status) {
   {
     MutexLock lock(mutex_);
     if (session_) status.session = *session_;
-    depth_.Tell(&status.depth);
-    thermal_.Tell(&status.thermal);
+    depth_.FillIn(&status.depth);
+    thermal_.FillIn(&status.thermal);
     status.clock_echo = clock_echo_;
     status.served_ground = grounds_.served();
   }

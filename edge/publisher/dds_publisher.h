@@ -92,6 +92,10 @@ class DdsPublisher final : public Publisher {
   /// Returns whether frames go in pieces: nothing of these is sent again, and a ground is there
   /// that reads them.
   bool SendsPieces() const { return !WaitsForGround() && options_.pieces && reads_pieces_; }
+  /// Makes the middleware forget what went whole, once it has arrived: a ground that comes later is
+  /// not to begin with it, old as it is.
+  template <typename Frame>
+  void ForgetWholeFrames(Writer<Frame>* writer, OutgoingStream* stream);
   template <typename Frame>
   Result<bool> BackfillFrame(const Frame& frame, int tries, Writer<Backfilled<Frame>>* writer,
                              OutgoingStream* stream, const std::stop_token& stop);
@@ -115,9 +119,16 @@ class DdsPublisher final : public Publisher {
   /// Goes over to pieces, for this session, if the lossless policy finds that it must.
   void LookAtRepairs(SteadyTime now) REQUIRES(mutex_);
   /// Says why the ground's word about this session cannot be true.
-  std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
+  std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_) {
+    if (const auto cause = depth_.sent().Check(receipt.depth)) return cause;
+    return thermal_.sent().Check(receipt.thermal);
+  }
   std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
-      REQUIRES(mutex_);
+      REQUIRES(mutex_) {
+    if (!grounds_.Knows(sender)) return RefusalCause::kNotTheGround;
+    if (feedback.session != session_) return RefusalCause::kOtherSession;
+    return depth_.sent().Check(feedback);
+  }
   std::optional<std::uint64_t> session() const {
     MutexLock lock(mutex_);
     return session_;

@@ -46,7 +46,8 @@ class LivePace {
   int stride(Sensor sensor) const { return kSteps.at(step_).at(static_cast<std::size_t>(sensor)); }
   /// Returns whether all frames are sent.
   bool is_full_rate() const { return step_ == 0; }
-  /// Returns how long a frame and its receipt took at the quickest of late; 0: not known.
+  /// Returns how long a frame and its receipt took at the quickest in the newest minute or half of
+  /// one; 0: not known.
   Nanoseconds quickest() const {
     const Nanoseconds quickest = std::min(quickest_[0], quickest_[1]);
     return quickest == Nanoseconds::max() ? Nanoseconds(0) : quickest;

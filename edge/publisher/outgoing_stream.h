@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "common/messages/frame_number_set.h"
 #include "common/messages/messages.h"
@@ -46,11 +45,12 @@ class OutgoingStream {
     counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
   }
   void OnFailed() { ++counts_.failed; }
-  /// Enters how the next frame goes. Returns whether those before went whole, which the middleware
-  /// keeps for readers that come later, and this one does not.
-  bool GoesOverToPieces(bool in_pieces) {
-    return std::exchange(went_whole_, !in_pieces) && in_pieces;
-  }
+  /// Enters that a frame went whole: the middleware keeps the newest of these for readers that come
+  /// later.
+  void OnWhole() { keeps_whole_ = true; }
+  /// Enters that the middleware keeps none any more.
+  void OnForgotten() { keeps_whole_ = false; }
+  bool keeps_whole() const { return keeps_whole_; }
   /// Enters what the ground says, once sent() has found that it can be true.
   void OnReceipt(const StreamReceipt& receipt, SteadyTime now) {
     window_.OnReceipt(receipt.handled, now);
@@ -83,7 +83,8 @@ class OutgoingStream {
   /// From now on every reader counts as new: it may be the successor of one that has left.
   void ForgetReaders() { readers_ = 0; }
 
-  void Tell(StreamStatus* status) const {
+  /// Enters what is sent into the status of the edge.
+  void FillIn(StreamStatus* status) const {
     status->published = counts_.published;
     status->next_frame_number = counts_.next_frame_number;
   }
@@ -104,7 +105,7 @@ class OutgoingStream {
   FrameNumberSet published_;
   FlowWindow window_;
   PublishedStream sent_;
-  bool went_whole_ = false;      ///< The newest frame.
+  bool keeps_whole_ = false;     ///< The middleware keeps whole frames.
   int readers_ = 0;              ///< When last looked at.
   SteadyTime reader_came_at_{};  ///< The newest of them.
 };

@@ -92,8 +92,8 @@ class Publisher {
   virtual Status Announce(const RigDescription& rig) = 0;
   /// Says of the next frame of a stream whether it is to be published, or, with kLive, left for
   /// later, because the link is too narrow for all (LivePace, PiecePace); so many newer frames wait
-  /// behind it. Where whole frames do not get along (PublisherOptions::leaves_whole_frames),
-  /// kLossless is kLive here and below.
+  /// behind it. Here, for Publish() and for Backfill() kLossless is as kLive once the publisher has
+  /// found that whole frames do not get along (PublisherOptions::leaves_whole_frames).
   virtual bool TakesNext(Sensor sensor, std::size_t newer) = 0;
   /// Writes a frame. With kLossless it first waits for room in the flow window. Once stop is
   /// requested, all frames that follow have the time of one StopBudget. An error: the frame was not

@@ -24,7 +24,8 @@ class RepairWatch {
   /// Less than this is a lost packet or two, whatever was sent meanwhile.
   static constexpr std::uint64_t kMinRepeatedBytes = 10'000;
   /// There and back takes a frame and its receipt this long at the quickest: repairs take as long.
-  /// Nearer, the middleware repairs a fifth in time. Not tuned.
+  /// Nearer, the middleware repairs a fifth in time. The ground's receipts wait for a few frames,
+  /// so that a rig of less than 20 frames a second seems farther than it is. Not tuned.
   static constexpr Nanoseconds kFar = std::chrono::milliseconds(30);
   /// Bytes are compared over this time, and frames are late for as long. Not tuned.
   static constexpr Nanoseconds kOver = std::chrono::seconds(1);

@@ -124,8 +124,9 @@ class LinkSoakTest : public ::testing::Test {
         link_->On(NetworkEnd::kEdge, EdgeDaemon(),
                   {"--recording", scan_, "--rig", rig_, "--record", record_, "--exit-at-end",
                    "--set", "link.expert.linger_s=120", "--set",
-                   // One process waits for the ground, the next one leaves frames for later.
-                   edges_ % 2 == 0 ? "link.policy=LIVE" : "link.policy=LOSSLESS", "--set",
+                   // One process waits for the ground, the next one leaves frames for later; which
+                   // is first depends on the seed.
+                   (edges_ + seed_) % 2 == 0 ? "link.policy=LOSSLESS" : "link.policy=LIVE", "--set",
                    "source.loops=" + std::to_string(loops)}));
     ASSERT_TRUE(edge_->WaitForOutput("recording to", kPatience)) << edge_->output();
   }
