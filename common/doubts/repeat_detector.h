@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -34,17 +34,36 @@ class RepeatDetector {
   }
 
  private:
-  /// 64 bits at a time; equal images have equal hashes.
-  static std::uint64_t Hash(const Image<std::uint16_t>& image) {
+  /// Four words of 64 bits side by side, since each step of a hash waits for the one before.
+  static constexpr std::size_t kLanes = 4;
+  using Words = std::array<std::uint64_t, kLanes>;
+
+  static std::uint64_t Mix(std::uint64_t hash, std::uint64_t word) {
     constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15ULL;  // 2^64 over the golden ratio.
-    std::uint64_t hash = static_cast<std::uint64_t>(image.width());
+    hash = (hash ^ word) * kMultiplier;
+    return hash ^ hash >> 29U;
+  }
+  /// Equal images have equal hashes.
+  static std::uint64_t Hash(const Image<std::uint16_t>& image) {
     const std::span<const std::byte> bytes = std::as_bytes(image.pixels());
-    for (std::size_t i = 0; i < bytes.size(); i += sizeof(std::uint64_t)) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes.data() + i, std::min(sizeof word, bytes.size() - i));
-      hash = (hash ^ word) * kMultiplier;
-      hash ^= hash >> 29U;
+    Words hashes = {1, 2, 3, 4};
+    const auto add = [&](const Words& words) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        hashes[lane] = Mix(hashes[lane], words[lane]);
+    };
+    Words words{};
+    std::size_t i = 0;
+    for (; i + sizeof words <= bytes.size(); i += sizeof words) {
+      std::memcpy(words.data(), bytes.data() + i, sizeof words);
+      add(words);
     }
+    if (i < bytes.size()) {
+      words = {};
+      std::memcpy(words.data(), bytes.data() + i, bytes.size() - i);
+      add(words);
+    }
+    auto hash = static_cast<std::uint64_t>(image.width());
+    for (const std::uint64_t lane : hashes) hash = Mix(hash, lane);
     return hash;
   }
 

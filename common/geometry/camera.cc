@@ -10,6 +10,54 @@ namespace {
 /// Far more than depth and thermal cameras have; larger ones would make maps of gigabytes.
 constexpr int kMaxImageSide = 16384;
 
+/// A point that the lens has moved, in normalised image coordinates, and its derivative by where it
+/// was.
+struct Distorted {
+  Eigen::Vector2d xy;
+  Eigen::Matrix2d derivative;
+};
+
+Distorted Distort(const CameraModel& camera, const Eigen::Vector2d& normalized) {
+  const double x = normalized.x();
+  const double y = normalized.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
+  const double slope = camera.k1 + r2 * (2.0 * camera.k2 + r2 * 3.0 * camera.k3);  // By r2.
+  Distorted result;
+  result.xy.x() = x * radial + 2.0 * camera.p1 * x * y + camera.p2 * (r2 + 2.0 * x * x);
+  result.xy.y() = y * radial + camera.p1 * (r2 + 2.0 * y * y) + 2.0 * camera.p2 * x * y;
+  const double across = 2.0 * (x * y * slope + camera.p1 * x + camera.p2 * y);
+  result.derivative << radial + 2.0 * (x * x * slope + camera.p1 * y) + 6.0 * camera.p2 * x, across,
+      across, radial + 2.0 * (y * y * slope + camera.p2 * x) + 6.0 * camera.p1 * y;
+  return result;
+}
+
+/// Normalised; far below what a double's pixel can tell.
+constexpr double kConverged = 1e-12;
+
+/// Returns the point that the lens moves to `distorted`; nullopt if it was not found without
+/// passing a fold of the polynomial: there may be none.
+std::optional<Eigen::Vector2d> UnprojectByNewton(const CameraModel& camera,
+                                                 const Eigen::Vector2d& distorted) {
+  constexpr int kMaxIterations = 10;
+  /// Longer steps may lead across a fold.
+  constexpr double kMaxStep = 0.5;
+  Eigen::Vector2d point = distorted;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const auto [xy, derivative] = Distort(camera, point);
+    const Eigen::Vector2d error = xy - distorted;
+    const double determinant = derivative.determinant();
+    if (!(determinant > 0.0)) return std::nullopt;
+    if (error.squaredNorm() < kConverged * kConverged) return point;
+    const Eigen::Vector2d step(
+        (derivative(1, 1) * error.x() - derivative(0, 1) * error.y()) / determinant,
+        (derivative(0, 0) * error.y() - derivative(1, 0) * error.x()) / determinant);
+    if (!(step.squaredNorm() <= kMaxStep * kMaxStep)) return std::nullopt;
+    point -= step;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 CameraModel CameraModel::WithoutDistortion() const {
@@ -68,13 +116,8 @@ Status Validate(const CameraModel& c, std::string_view name) {
 }
 
 Eigen::Vector2d ProjectNormalized(const CameraModel& camera, const Eigen::Vector2d& normalized) {
-  const double x = normalized.x();
-  const double y = normalized.y();
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
-  const double xd = x * radial + 2.0 * camera.p1 * x * y + camera.p2 * (r2 + 2.0 * x * x);
-  const double yd = y * radial + camera.p1 * (r2 + 2.0 * y * y) + 2.0 * camera.p2 * x * y;
-  return {camera.fx * xd + camera.cx, camera.fy * yd + camera.cy};
+  const Eigen::Vector2d distorted = Distort(camera, normalized).xy;
+  return {camera.fx * distorted.x() + camera.cx, camera.fy * distorted.y() + camera.cy};
 }
 
 std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
@@ -86,15 +129,13 @@ Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixe
   const Eigen::Vector2d distorted((pixel.x() - camera.cx) / camera.fx,
                                   (pixel.y() - camera.cy) / camera.fy);
   if (!camera.HasDistortion()) return distorted;
-  // Fixed-point iteration. With the default rig's wide thermal lens the middle of the image takes 3
-  // steps to kConverged and its corners 29 to 39.
+  if (const auto point = UnprojectByNewton(camera, distorted)) return *point;
+  // Fixed-point iteration, which also ends somewhere where no point is seen. With the default rig's
+  // wide thermal lens the corners of the image take it 29 to 39 steps.
   constexpr int kMaxIterations = 50;
-  constexpr double kConverged = 1e-12;
   Eigen::Vector2d point = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
-    const Eigen::Vector2d reprojected = ProjectNormalized(camera, point);
-    const Eigen::Vector2d error((reprojected.x() - pixel.x()) / camera.fx,
-                                (reprojected.y() - pixel.y()) / camera.fy);
+    const Eigen::Vector2d error = Distort(camera, point).xy - distorted;
     point -= error;
     if (error.squaredNorm() < kConverged * kConverged) break;
   }

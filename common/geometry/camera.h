@@ -54,8 +54,9 @@ Eigen::Vector2d ProjectNormalized(const CameraModel& camera, const Eigen::Vector
 /// camera.
 std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::Vector3d& p_camera);
 
-/// Pixel coordinates (distorted) -> normalised image coordinates without distortion, by fixed-point
-/// iteration.
+/// Pixel coordinates (distorted) -> normalised image coordinates without distortion, by Newton's
+/// method. A pixel beyond the fold of the distortion's polynomial sees no point: what is returned
+/// for it projects elsewhere.
 Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixel);
 
 }  // namespace isotherm

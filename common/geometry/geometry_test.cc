@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "common/geometry/camera.h"
@@ -76,6 +77,36 @@ TEST(CameraTest, UnprojectInvertsProjectOverTheWholeImage) {
       EXPECT_NEAR((back - pixel).norm(), 0.0, kSubPixel) << "u=" << u << " v=" << v;
     }
   }
+}
+
+TEST(CameraTest, UnprojectFindsThePointThatAnyLensHasMoved) {
+  constexpr double kNearFold = 1e-9;  // Normalised: the polynomial is flat there.
+  struct Lens {
+    double k1, k2, p1, p2, k3;
+    double radius;  ///< Normalised; within the fold of the polynomial.
+  };
+  for (const auto& [k1, k2, p1, p2, k3, radius] :
+       {Lens{-0.4, 0.0, 0.0, 0.0, 0.0, 0.9}, Lens{-0.4, 0.05, 0.01, -0.02, 0.0, 0.95},
+        Lens{0.5, 0.0, -0.01, 0.01, 0.0, 1.5}, Lens{-0.2, 0.3, 0.0, 0.0, -0.1, 0.9},
+        Lens{0.0, 0.0, 0.05, 0.05, 0.0, 1.0}}) {
+    CameraModel camera = ThermalCameraModel();
+    camera.k1 = k1, camera.k2 = k2, camera.p1 = p1, camera.p2 = p2, camera.k3 = k3;
+    for (double r = 0.0; r <= radius; r += 0.05) {
+      for (double angle = 0.0; angle < 6.0; angle += 0.7) {
+        const Eigen::Vector2d point(r * std::cos(angle), r * std::sin(angle));
+        const Eigen::Vector2d found = Unproject(camera, ProjectNormalized(camera, point));
+        EXPECT_NEAR((found - point).norm(), 0.0, kNearFold) << "k1=" << k1 << " r=" << r;
+      }
+    }
+  }
+}
+
+TEST(CameraTest, WhatThePolynomialDoesNotReachIsNotUnprojected) {
+  CameraModel camera = ThermalCameraModel();
+  camera.k1 = -0.4, camera.k2 = camera.p1 = camera.p2 = camera.k3 = 0.0;
+  // It moves nothing farther out than to 0.609.
+  const Eigen::Vector2d pixel(camera.cx + 0.7 * camera.fx, camera.cy);
+  EXPECT_GT((ProjectNormalized(camera, Unproject(camera, pixel)) - pixel).norm(), 1.0);
 }
 
 TEST(CameraTest, PointsBehindTheCameraDoNotProject) {
