@@ -40,19 +40,21 @@ constexpr double kConverged = 1e-12;
 std::optional<Eigen::Vector2d> UnprojectByNewton(const CameraModel& camera,
                                                  const Eigen::Vector2d& distorted) {
   constexpr int kMaxIterations = 10;
-  /// Longer steps may lead across a fold.
+  /// Longer steps outwards, normalised, may lead across a fold.
   constexpr double kMaxStep = 0.5;
   Eigen::Vector2d point = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
     const auto [xy, derivative] = Distort(camera, point);
     const Eigen::Vector2d error = xy - distorted;
-    const double determinant = derivative.determinant();
+    const double determinant =
+        derivative(0, 0) * derivative(1, 1) - derivative(0, 1) * derivative(1, 0);
     if (!(determinant > 0.0)) return std::nullopt;
     if (error.squaredNorm() < kConverged * kConverged) return point;
     const Eigen::Vector2d step(
         (derivative(1, 1) * error.x() - derivative(0, 1) * error.y()) / determinant,
         (derivative(0, 0) * error.y() - derivative(1, 0) * error.x()) / determinant);
-    if (!(step.squaredNorm() <= kMaxStep * kMaxStep)) return std::nullopt;
+    const bool is_outwards = (point - step).squaredNorm() > point.squaredNorm();
+    if (is_outwards && step.squaredNorm() > kMaxStep * kMaxStep) return std::nullopt;
     point -= step;
   }
   return std::nullopt;

@@ -51,7 +51,8 @@ CameraModel RectifiedCamera(const CameraModel& camera) {
   CameraModel result = camera.WithoutDistortion();
   if (!camera.HasDistortion()) return result;
   const Eigen::AlignedBox2d border = UndistortedBorder(camera);
-  if (border.isEmpty() || !border.sizes().allFinite()) return result;
+  // What sees everything but what is straight ahead is no lens.
+  if (!border.contains(Eigen::Vector2d(0.0, 0.0)) || !border.sizes().allFinite()) return result;
   const double shortened =
       std::min({1.0, (kMaxGrowth * camera.width - 1.0) / camera.fx / border.sizes().x(),
                 (kMaxGrowth * camera.height - 1.0) / camera.fy / border.sizes().y()});
