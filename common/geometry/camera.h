@@ -54,9 +54,8 @@ Eigen::Vector2d ProjectNormalized(const CameraModel& camera, const Eigen::Vector
 /// camera.
 std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::Vector3d& p_camera);
 
-/// Pixel coordinates (distorted) -> normalised image coordinates without distortion, by Newton's
-/// method. A pixel beyond the fold of the distortion's polynomial sees no point: what is returned
-/// for it projects elsewhere.
+/// Pixel coordinates (distorted) -> normalised image coordinates without distortion. A pixel beyond
+/// the fold of the distortion's polynomial sees no point, and what is returned projects elsewhere.
 Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixel);
 
 }  // namespace isotherm
