@@ -30,10 +30,21 @@ endforeach()
 configure_file(${SOURCE_DIR}/systemd/network.env.in ${BINARY_DIR}/systemd/network.env @ONLY)
 install_configuration(${BINARY_DIR}/systemd/network.env)
 
-foreach(unit IN ITEMS isotherm-edge.service isotherm-ground.service)
-  configure_file(${SOURCE_DIR}/systemd/${unit}.in ${BINARY_DIR}/systemd/${unit} @ONLY)
+function(install_unit template unit)
+  configure_file(${SOURCE_DIR}/systemd/${template}.in ${BINARY_DIR}/systemd/${unit} @ONLY)
   file(INSTALL DESTINATION ${prefix}/lib/systemd/system TYPE FILE FILES ${BINARY_DIR}/systemd/${unit})
-endforeach()
+endfunction()
+
+install_unit(isotherm-edge.service isotherm-edge.service)
+install_unit(isotherm-ground.service isotherm-ground.service)
+# The same for one of several rigs: its name is that of the instance.
+set(OF_RIG " of the rig %i")
+set(PER_RIG "-%i")
+set(FOR_RIG " --edge-id %i --output %S/isotherm/ground-%i --set console.port=0 $ARGUMENTS")
+set(OWN_ARGUMENTS "# ARGUMENTS, what differs from ground.textproto for this rig: \"--set console.port=8081 --threads 1\".
+EnvironmentFile=-${INSTALL_CONFIG}/ground-%i.env
+")
+install_unit(isotherm-ground.service isotherm-ground@.service)
 file(INSTALL DESTINATION ${prefix}/lib/sysusers.d TYPE FILE RENAME isotherm.conf
   FILES ${SOURCE_DIR}/systemd/isotherm.sysusers)
 file(INSTALL DESTINATION ${prefix}/lib/sysctl.d TYPE FILE RENAME 60-isotherm.conf

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <string>
 
 #include "common/messages/messages.h"
 
@@ -27,6 +30,16 @@ inline std::uint64_t LeftForLater(const EdgeStatus& status) {
     }
   }
   return frames;
+}
+
+/// "640 frames of 9 s (link too narrow)": what the ground lacks, and how much of the scan that is,
+/// if the rig tells how many frames its cameras take.
+inline std::string BacklogText(const EdgeStatus& status) {
+  const double rate_hz = status.depth.rate_hz + status.thermal.rate_hz;
+  const double seconds = static_cast<double>(status.spool_frames) / rate_hz;
+  return fmt::format("{} frames{}{}", status.spool_frames,
+                     rate_hz > 0.0 ? fmt::format(" of {:.0f} s", seconds) : "",
+                     LeftForLater(status) > 0 ? " (link too narrow)" : "");
 }
 
 }  // namespace isotherm

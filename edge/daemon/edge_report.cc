@@ -72,12 +72,11 @@ std::string OldText(const EdgeSituation& situation) {
   return is_old ? fmt::format("advice {:.1f} s OLD", ToSeconds(*situation.feedback_age)) : "";
 }
 
-/// "ground lacks 640 frames", which the recording has; nothing while no more than usual are on
+/// "ground lacks 640 frames of 9 s", which the recording has; nothing while no more than usual are on
 /// their way.
 std::string LackingText(const EdgeStatus& status) {
   if (!HasBacklog(status)) return {};
-  return fmt::format("ground lacks {} frames{}", status.spool_frames,
-                     LeftForLater(status) > 0 ? " (link too narrow)" : "");
+  return "ground lacks " + BacklogText(status);
 }
 
 /// Says how many arrived of those that left the rig; the line above has the others. The ground's

@@ -81,11 +81,8 @@ void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) 
   if (situation.edge) {
     const std::uint64_t dropped = Dropped(situation.edge->depth) + Dropped(situation.edge->thermal);
     if (dropped > 0) parts.push_back(fmt::format("dropped by the rig {}", dropped));
-    if (HasBacklog(*situation.edge)) {
-      parts.push_back(fmt::format("{} frames to come from the rig's recording{}",
-                                  situation.edge->spool_frames,
-                                  LeftForLater(*situation.edge) > 0 ? " (link too narrow)" : ""));
-    }
+    if (HasBacklog(*situation.edge))
+      parts.push_back("to come from the rig's recording: " + BacklogText(*situation.edge));
     if (const double age_s = situation.edge->feedback.p50_s; age_s > kOldFeedback_s)
       parts.push_back(fmt::format("advice is {:.1f} s old when it reaches the rig", age_s));
   }

@@ -155,11 +155,14 @@ TEST(StatusReporterTest, F25WhatIsStillToComeIsSaid) {
   situation.edge.emplace().spool_frames = 100;
   EXPECT_THAT(StatusText(situation), Not(HasSubstr("to come")));
   situation.edge->spool_frames = 1180;
-  EXPECT_THAT(StatusText(situation), HasSubstr("1180 frames to come from the rig's recording"));
+  EXPECT_THAT(StatusText(situation), HasSubstr("to come from the rig's recording: 1180 frames |"));
+  situation.edge->depth.rate_hz = 29.5;
+  situation.edge->thermal.rate_hz = 39.9;
+  EXPECT_THAT(StatusText(situation), HasSubstr("recording: 1180 frames of 17 s |"));
   EXPECT_THAT(StatusText(situation), Not(HasSubstr("too narrow")));
   situation.edge->depth.dropped = {{"left for later", 700}};
   EXPECT_THAT(StatusText(situation),
-              HasSubstr("1180 frames to come from the rig's recording (link too narrow)"));
+              HasSubstr("recording: 1180 frames of 17 s (link too narrow) |"));
 }
 
 TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {

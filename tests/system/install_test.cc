@@ -61,9 +61,9 @@ TEST_F(InstallTest, ProgramsConfigurationsAndUnitsAreInPlace) {
         "etc/isotherm/cyclonedds-lan.xml", "etc/isotherm/cyclonedds-radio.xml",
         "etc/isotherm/network.env", "etc/isotherm/chrony-rig.conf",
         "etc/isotherm/chrony-ground.conf", "lib/systemd/system/isotherm-edge.service",
-        "lib/systemd/system/isotherm-ground.service", "lib/udev/rules.d/60-isotherm-thermal.rules",
-        "lib/sysusers.d/isotherm.conf", "lib/sysctl.d/60-isotherm.conf",
-        "share/doc/isotherm/README.md"}) {
+        "lib/systemd/system/isotherm-ground.service", "lib/systemd/system/isotherm-ground@.service",
+        "lib/udev/rules.d/60-isotherm-thermal.rules", "lib/sysusers.d/isotherm.conf",
+        "lib/sysctl.d/60-isotherm.conf", "share/doc/isotherm/README.md"}) {
     EXPECT_TRUE(std::filesystem::exists(prefix_ / path)) << path;
   }
 }
@@ -119,11 +119,12 @@ TEST_F(InstallTest, TheServiceManagerAcceptsTheUnits) {
   const std::filesystem::path analyze = FindProgram("systemd-analyze");
   if (analyze.empty()) GTEST_SKIP() << "systemd-analyze is not installed";
   ASSERT_EQ(Install().status, 0);
-  const Finished verify = RunToEnd(
-      {analyze,
-       {"verify", "--man=no", Unit("isotherm-edge.service"), Unit("isotherm-ground.service")},
-       {}},
-      kPatience);
+  const Finished verify =
+      RunToEnd({analyze,
+                {"verify", "--man=no", Unit("isotherm-edge.service"),
+                 Unit("isotherm-ground.service"), Unit("isotherm-ground@.service")},
+                {}},
+               kPatience);
   EXPECT_EQ(verify.status, 0) << verify.output;
   EXPECT_EQ(verify.output.find("isotherm-"), std::string::npos) << verify.output;
 }
@@ -149,7 +150,8 @@ TEST_F(InstallTest, TheUnitsAreClosedAsFarAsTheyCanBe) {
   const std::filesystem::path analyze = FindProgram("systemd-analyze");
   if (analyze.empty()) GTEST_SKIP() << "systemd-analyze is not installed";
   ASSERT_EQ(Install().status, 0);
-  for (const auto& [name, limit] : {std::pair{"edge", "16"}, std::pair{"ground", "14"}}) {
+  for (const auto& [name, limit] :
+       {std::pair{"edge", "16"}, std::pair{"ground", "14"}, std::pair{"ground@", "14"}}) {
     const Finished assessed =
         RunToEnd({analyze,
                   {"security", "--offline=yes", "--no-pager", "--threshold=" + std::string(limit),

@@ -1,10 +1,11 @@
 // More than one rig on one network: two of one name, one of a name that nobody follows, one that
-// was killed and comes back.
+// was killed and comes back, four with a ground each.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include <chrono>
+#include <deque>
 #include <iostream>
 #include <memory>
 
@@ -42,9 +43,9 @@ class TwoRigsTest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), arguments, {}};
   }
-  Command Ground(std::vector<std::string> more = {}) const {
+  Command Ground(std::vector<std::string> more = {}, const std::string& folder = "ground") const {
     std::vector<std::string> arguments = {"--domain", std::to_string(OwnDomain()), "--output",
-                                          Path("ground")};
+                                          Path(folder)};
     const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -99,6 +100,23 @@ TEST_F(TwoRigsTest, F36TheFirstOfOneNameKeepsItsScanAndTheSecondIsRefusedAndTold
   EXPECT_EQ(Count(ground.output(), "a second rig of the name"), 1) << ground.output();
   EXPECT_LE(Count(ground.output(), "clock is not synchronised"), 1) << ground.output();
   EXPECT_GT(NumberAt(ReadStats(Path("ground")), {"link", "depth", "refused"}), 0.0);
+}
+
+TEST_F(TwoRigsTest, EachOfFourRigsArrivesWholeAtItsOwnGround) {
+  const std::vector<std::string> names = {"north", "east", "south", "west"};
+  std::deque<Process> grounds, edges;
+  for (const std::string& name : names) {
+    grounds.emplace_back(Ground({"--once", "--edge-id", name}, "ground-" + name));
+    ASSERT_TRUE(grounds.back().WaitForOutput("ready", kPatience)) << grounds.back().output();
+  }
+  for (const std::string& name : names)
+    edges.emplace_back(Edge(name, 2, {"--wait-for-ground", "--edge-id", name}));
+  for (Process& edge : edges) EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  for (Process& ground : grounds) EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+  for (const std::string& name : names) {
+    ExpectTheScanOf(Path(name + ".mcap"), Path("ground-" + name));
+    EXPECT_TRUE(std::filesystem::exists(Path("ground-" + name) / "cloud.ply")) << name;
+  }
 }
 
 TEST_F(TwoRigsTest, ARigThatNobodyFollowsIsNamedOnBothSidesAndDoesNotWait) {

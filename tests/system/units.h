@@ -68,7 +68,7 @@ class UnitsTest : public ::testing::Test {
   }
   void TearDown() override {
     if (obstacle_) return;
-    Run({"systemctl", "stop", kEdge, kGround});
+    Run({"systemctl", "stop", kEdge, kGround, "isotherm-ground@*.service"});
     if (HasFailure()) std::printf("%s\n", Journal("").c_str());
     for (const std::string& unit : {kEdge, kGround}) {
       std::filesystem::remove_all(root() / "etc/systemd/system" / (unit + ".d"));

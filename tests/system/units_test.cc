@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -38,6 +39,33 @@ TEST_F(UnitsScanTest, AScanBetweenTheTwoServices) {
   }
   ExpectTheCountersBalance();
   ExpectReadableByTheGroupOnly();
+}
+
+TEST_F(UnitsScanTest, EachOfSeveralRigsHasAGroundOfItsOwn) {
+  Prepare(2, Plays::kForEver);
+  container_->Output("sed -i 's|edge_id: \"\"|edge_id: \"north-1\"|' /etc/isotherm/edge.textproto");
+  std::ofstream(root() / "etc/isotherm/ground-south.env") << "ARGUMENTS=--set console.port=8085\n";
+  const std::string north = "isotherm-ground@north-1.service",
+                    south = "isotherm-ground@south.service";
+  ASSERT_EQ(Run({"systemctl", "start", north, south, kEdge}).status, 0)
+      << container_->Output("systemctl status " + north + ' ' + south);
+  EXPECT_TRUE(Until(kPatience, [&] {
+    return Property(north, "StatusText").find("tracked") != std::string::npos;
+  })) << container_->Output("systemctl status " + north);
+  for (const std::string& unit : {north, south}) {
+    EXPECT_EQ(Property(unit, "ActiveState"), "active") << unit;
+    EXPECT_EQ(Property(unit, "NRestarts"), "0") << unit;
+    ExpectWatched(unit);
+  }
+  EXPECT_THAT(Property(south, "StatusText"), Not(HasSubstr("tracked"))) << "another's rig";
+  EXPECT_THAT(container_->Output("journalctl --no-pager --quiet --output cat --unit " + south),
+              HasSubstr("http://127.0.0.1:8085"));
+  EXPECT_EQ(Run({"systemctl", "stop", kEdge, north, south}).status, 0);
+  EXPECT_EQ(container_->Output("ls /var/lib/isotherm/ground-north-1/*/stats.json | wc -l"), "1");
+  EXPECT_EQ(
+      container_->Output("ls /var/lib/isotherm/ground-south/*/stats.json 2>/dev/null | wc -l"),
+      "0");
+  std::filesystem::remove(root() / "etc/isotherm/ground-south.env");
 }
 
 #ifdef RECORDS_ONI
