@@ -31,7 +31,7 @@ set multiplot layout 1,2
 set xlabel "$3"
 set yrange [0:*]
 set grid ytics linecolor "#d0d0d0"
-set key top
+set key above
 set ylabel "most that the ground lacked, s"
 plot "$data/$1-LOSSLESS" using 1:4 title "LOSSLESS" with linespoints linewidth 2 pointtype 5 linecolor "#d62728", \\
      "$data/$1-LIVE" using 1:4 title "LIVE" with linespoints linewidth 2 pointtype 7 linecolor "#1f77b4"
