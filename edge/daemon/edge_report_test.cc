@@ -232,7 +232,7 @@ TEST_F(EdgeReportTest, F28FramesThatAreLeftForLaterAreCountedAndTheReasonIsSaid)
   EdgeSituation situation = Scanning();
   situation.status.depth = ToStreamStatus(counters_.Get(Sensor::kDepth), 30.0);
   situation.status.spool_frames = 640;
-  EXPECT_THAT(StatusLine(situation), HasSubstr("ground lacks 640 frames of 21 s (link too narrow)"));
+  EXPECT_THAT(StatusLine(situation), HasSubstr("ground lacks 640 frames of 9 s (link too narrow)"));
 }
 
 TEST_F(EdgeReportTest, F41HowLongTheDiskLastsIsSaidWhileAllIsWell) {
