@@ -18,7 +18,7 @@ namespace isotherm {
 /// Thread-compatible.
 class RepairWatch {
  public:
-  /// Of the bytes that are sent, so many are sent again. With 1 % of the packets lost and a round
+  /// This fraction of the bytes is sent again at most. With 1 % of the packets lost and a round
   /// trip of 40 ms the middleware keeps up, with 5 % it does not (docs/link.md).
   static constexpr double kMaxRepeated = 0.02;
   /// Less than this is a lost packet or two, whatever was sent meanwhile.
@@ -32,7 +32,7 @@ class RepairWatch {
   /// Receipts come five times a second, and lost ones are repaired; longer than this without one is
   /// an outage.
   static constexpr Nanoseconds kSilence = std::chrono::milliseconds(800);
-  /// What an outage has left behind is repaired by then on a link that is good otherwise.
+  /// An outage's remains have been repaired by then on a link that is good otherwise.
   static constexpr Nanoseconds kAfterSilence = std::chrono::seconds(3);
 
   void BeginSession() { *this = RepairWatch(); }
@@ -81,7 +81,7 @@ class RepairWatch {
   }
 
   std::uint64_t sent_bytes_ = 0;
-  std::deque<Observation> looks_;  ///< Of the newest kOver, and one before.
+  std::deque<Observation> looks_;  ///< The newest kOver, and one before.
   std::optional<SteadyTime> first_sent_at_, receipt_at_, silence_ended_;
   std::optional<SteadyTime> late_since_;  ///< Without a break, and not by an outage.
 };

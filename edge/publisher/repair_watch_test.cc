@@ -19,7 +19,7 @@ constexpr Nanoseconds kFound = RepairWatch::kOver + 2 * kInterval;
 class RepairWatchTest : public ::testing::Test {
  protected:
   struct Time {
-    double repeated;  ///< Of what the cameras take.
+    double repeated;  ///< A fraction of what the cameras take.
     bool is_late = true;
     Nanoseconds quickest = 45ms;
     bool has_receipts = true;
