@@ -72,8 +72,8 @@ std::string OldText(const EdgeSituation& situation) {
   return is_old ? fmt::format("advice {:.1f} s OLD", ToSeconds(*situation.feedback_age)) : "";
 }
 
-/// "ground lacks 640 frames of 9 s", which the recording has; nothing while no more than usual are on
-/// their way.
+/// "ground lacks 640 frames of 9 s", which the recording has; nothing while no more than usual are
+/// on their way.
 std::string LackingText(const EdgeStatus& status) {
   if (!HasBacklog(status)) return {};
   return "ground lacks " + BacklogText(status);
