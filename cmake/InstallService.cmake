@@ -40,6 +40,7 @@ install_unit(isotherm-ground.service isotherm-ground.service)
 # The same for one of several rigs: its name is that of the instance.
 set(OF_RIG " of the rig %i")
 set(PER_RIG "-%i")
+set(EDIT_AS "@NAME")
 set(FOR_RIG " --edge-id %i --output %S/isotherm/ground-%i --set console.port=0 $ARGUMENTS")
 set(OWN_ARGUMENTS "# ARGUMENTS, what differs from ground.textproto for this rig: \"--set console.port=8081 --threads 1\".
 EnvironmentFile=-${INSTALL_CONFIG}/ground-%i.env

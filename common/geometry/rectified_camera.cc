@@ -51,8 +51,11 @@ CameraModel RectifiedCamera(const CameraModel& camera) {
   CameraModel result = camera.WithoutDistortion();
   if (!camera.HasDistortion()) return result;
   const Eigen::AlignedBox2d border = UndistortedBorder(camera);
-  // What sees everything but what is straight ahead is no lens.
-  if (!border.contains(Eigen::Vector2d(0.0, 0.0)) || !border.sizes().allFinite()) return result;
+  if (border.isEmpty() || !border.sizes().allFinite()) return result;
+  // With the principal point in the image it sees what is straight ahead, or it is no lens.
+  const bool is_centred = camera.cx >= 0.0 && camera.cx <= camera.width - 1.0 && camera.cy >= 0.0 &&
+                          camera.cy <= camera.height - 1.0;
+  if (is_centred && !border.contains(Eigen::Vector2d(0.0, 0.0))) return result;
   const double shortened =
       std::min({1.0, (kMaxGrowth * camera.width - 1.0) / camera.fx / border.sizes().x(),
                 (kMaxGrowth * camera.height - 1.0) / camera.fy / border.sizes().y()});

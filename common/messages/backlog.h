@@ -33,12 +33,14 @@ inline std::uint64_t LeftForLater(const EdgeStatus& status) {
 }
 
 /// "640 frames of 9 s (link too narrow)": what the ground lacks, and how much of the scan that is,
-/// if the rig tells how many frames its cameras take.
+/// while both cameras deliver.
 inline std::string BacklogText(const EdgeStatus& status) {
-  const double rate_hz = status.depth.rate_hz + status.thermal.rate_hz;
-  const double seconds = static_cast<double>(status.spool_frames) / rate_hz;
+  const double depth_hz = status.depth.rate_hz, thermal_hz = status.thermal.rate_hz;
+  const bool is_known =
+      status.scan_state == ScanState::kScanning && depth_hz > 0.0 && thermal_hz > 0.0;
+  const double seconds = static_cast<double>(status.spool_frames) / (depth_hz + thermal_hz);
   return fmt::format("{} frames{}{}", status.spool_frames,
-                     rate_hz > 0.0 ? fmt::format(" of {:.0f} s", seconds) : "",
+                     is_known ? fmt::format(" of {:.0f} s", seconds) : "",
                      LeftForLater(status) > 0 ? " (link too narrow)" : "");
 }
 

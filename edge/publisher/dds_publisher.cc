@@ -248,13 +248,14 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stre
 
 template <typename Frame>
 void DdsPublisher::ForgetWholeFrames(Writer<Frame>* writer, OutgoingStream* stream) {
-  {
-    MutexLock lock(mutex_);
-    if (!stream->keeps_whole()) return;
-  }
+  if (MutexLock lock(mutex_); !stream->keeps_whole()) return;
   // While some are under way the middleware may have no room for another message.
   if (!writer->WaitForAcknowledgments(Nanoseconds(0))) return;
-  if (!writer->ForgetPast(options_.edge_id).ok()) return;
+  const Status forgotten = writer->ForgetPast(options_.edge_id);
+  if (forgotten.code() == StatusCode::kUnavailable) return;
+  if (!forgotten.ok()) {
+    LOG(Publisher, Warning) << "old frames stay for grounds that come: " << forgotten.message();
+  }
   MutexLock lock(mutex_);
   stream->OnForgotten();
 }

@@ -96,7 +96,8 @@ std::string NameOf(const Link& link) { return fmt::format("{}, {}", link.policy,
 
 ExperimentTable::Row RowOf(const Link& link, const LinkScanOutcome& outcome) {
   const EvaluationReport& evaluation = outcome.evaluation;
-  double good_k = std::numeric_limits<double>::quiet_NaN(), measured = good_k;
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  double good_k = kNan, measured = kNan;
   if (evaluation.temperature) {
     good_k = evaluation.temperature->good.all.magnitude.median;
     measured = static_cast<double>(evaluation.temperature->any.all.magnitude.count) /
@@ -104,8 +105,8 @@ ExperimentTable::Row RowOf(const Link& link, const LinkScanOutcome& outcome) {
   }
   return {NameOf(link),
           {outcome.missing, kPercent * outcome.late / outcome.captured,
-           outcome.most_lacking / kFrames_hz, outcome.scan_s, outcome.feedback_p50_ms,
-           outcome.feedback_p99_ms, outcome.sent_mbit_s,
+           link.backfill ? outcome.most_lacking / kFrames_hz : kNan, outcome.scan_s,
+           outcome.feedback_p50_ms, outcome.feedback_p99_ms, outcome.sent_mbit_s,
            kMmPerM * evaluation.trajectory.from_first_m.rms, good_k, kPercent * measured}};
 }
 

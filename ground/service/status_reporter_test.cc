@@ -156,6 +156,7 @@ TEST(StatusReporterTest, F25WhatIsStillToComeIsSaid) {
   EXPECT_THAT(StatusText(situation), Not(HasSubstr("to come")));
   situation.edge->spool_frames = 1180;
   EXPECT_THAT(StatusText(situation), HasSubstr("to come from the rig's recording: 1180 frames |"));
+  situation.edge->scan_state = ScanState::kScanning;
   situation.edge->depth.rate_hz = 29.5;
   situation.edge->thermal.rate_hz = 39.9;
   EXPECT_THAT(StatusText(situation), HasSubstr("recording: 1180 frames of 17 s |"));

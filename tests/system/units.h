@@ -74,7 +74,8 @@ class UnitsTest : public ::testing::Test {
       std::filesystem::remove_all(root() / "etc/systemd/system" / (unit + ".d"));
     }
     container_->Output(
-        "rm -rf /var/lib/isotherm/*/* ; cp -a /etc/isotherm.shipped/. /etc/isotherm/");
+        "rm -rf /var/lib/isotherm/*/* /etc/isotherm/ground-*.env ; cp -a /etc/isotherm.shipped/. "
+        "/etc/isotherm/");
     Run({"systemctl", "daemon-reload"});
     Run({"systemctl", "reset-failed"});
   }
@@ -89,9 +90,10 @@ class UnitsTest : public ::testing::Test {
   }
   /// Messages of and about both units since this test began.
   std::string Journal(const std::string& options) const {
-    return container_->Output(fmt::format(
-        "journalctl --no-pager --quiet --output cat --unit {} --unit {} --since '{}' {}", kEdge,
-        kGround, since_, options));
+    return container_->Output(
+        fmt::format("journalctl --no-pager --quiet --output cat --unit {} --unit {} --unit "
+                    "'isotherm-ground@*' --since '{}' {}",
+                    kEdge, kGround, since_, options));
   }
   bool JournalHas(const std::string& text) const {
     return Journal("").find(text) != std::string::npos;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -44,7 +43,7 @@ TEST_F(UnitsScanTest, AScanBetweenTheTwoServices) {
 TEST_F(UnitsScanTest, EachOfSeveralRigsHasAGroundOfItsOwn) {
   Prepare(2, Plays::kForEver);
   container_->Output("sed -i 's|edge_id: \"\"|edge_id: \"north-1\"|' /etc/isotherm/edge.textproto");
-  std::ofstream(root() / "etc/isotherm/ground-south.env") << "ARGUMENTS=--set console.port=8085\n";
+  Configure("ground-south.env", "ARGUMENTS=--set console.port=8085\n");
   const std::string north = "isotherm-ground@north-1.service",
                     south = "isotherm-ground@south.service";
   ASSERT_EQ(Run({"systemctl", "start", north, south, kEdge}).status, 0)
@@ -65,7 +64,6 @@ TEST_F(UnitsScanTest, EachOfSeveralRigsHasAGroundOfItsOwn) {
   EXPECT_EQ(
       container_->Output("ls /var/lib/isotherm/ground-south/*/stats.json 2>/dev/null | wc -l"),
       "0");
-  std::filesystem::remove(root() / "etc/isotherm/ground-south.env");
 }
 
 #ifdef RECORDS_ONI
