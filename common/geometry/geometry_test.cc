@@ -86,7 +86,7 @@ TEST(CameraTest, UnprojectFindsThePointThatAnyLensHasMoved) {
     double radius;  ///< Normalised; within the fold of the polynomial.
   };
   for (const auto& [k1, k2, p1, p2, k3, radius] :
-       {Lens{-0.4, 0.0, 0.0, 0.0, 0.0, 0.9}, Lens{-0.4, 0.05, 0.01, -0.02, 0.0, 0.95},
+       {Lens{-0.4, 0.0, 0.0, 0.0, 0.0, 0.9}, Lens{-0.4, 0.05, 0.01, -0.02, 0.0, 0.9},
         Lens{0.5, 0.0, -0.01, 0.01, 0.0, 1.5}, Lens{-0.2, 0.3, 0.0, 0.0, -0.1, 0.9},
         Lens{0.0, 0.0, 0.05, 0.05, 0.0, 1.0}}) {
     CameraModel camera = ThermalCameraModel();
