@@ -94,7 +94,7 @@ double MachineLoad::others_fraction() const { return OthersFraction(start_, Read
 
 double MachineLoad::worst_others_fraction() const {
   const MutexLock lock(mutex_);
-  return std::max(worst_, others_fraction());
+  return worst_;
 }
 
 bool MachineLoad::is_busy() const {

@@ -21,7 +21,7 @@ class MachineLoad {
 
   /// The fraction of all processors that others took, 0..1, since the construction.
   double others_fraction() const;
-  /// The same in the worst second.
+  /// The same in the worst whole second; 0 within the first, since of a few ticks nothing follows.
   double worst_others_fraction() const;
   /// Others left so little that lateness and losses by lateness tell nothing.
   bool is_busy() const;
