@@ -3,9 +3,14 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <systemd/sd-daemon.h>
+#include <unistd.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 
 #include "common/base/check.h"
@@ -34,23 +39,48 @@ std::string_view Reason(int signal) {
 
 void Notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_str())); }
 
+/// The same for what is said again and again: it is left out while the service manager does not
+/// read, instead of waiting for it as sd_notify does.
+void NotifyUnlessBusy(const std::string& state) {
+  const char* path = std::getenv("NOTIFY_SOCKET");
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path == nullptr) return;
+  const std::string_view name(path);
+  const bool is_abstract = name.starts_with('@');
+  // Another kind of socket is for the library.
+  if (!(is_abstract || name.starts_with('/')) || name.size() >= sizeof(address.sun_path))
+    return Notify(state);
+  name.copy(address.sun_path, name.size());
+  if (is_abstract) address.sun_path[0] = '\0';
+  const int sender = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (sender < 0) return;
+  const auto size =
+      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size() + (is_abstract ? 0 : 1));
+  // What is left out is said again.
+  static_cast<void>(::sendto(sender, state.data(), state.size(), MSG_NOSIGNAL,
+                             reinterpret_cast<const sockaddr*>(&address), size));
+  ::close(sender);
+}
+
 }  // namespace
 
 void NotifyReady(std::string_view status) { Notify("READY=1\nSTATUS=" + std::string(status)); }
-void NotifyStatus(std::string_view status) { Notify("STATUS=" + std::string(status)); }
+void NotifyStatus(std::string_view status) { NotifyUnlessBusy("STATUS=" + std::string(status)); }
 void NotifyWaiting(std::string_view reason) {
-  Notify("READY=1\nWATCHDOG=1\nSTATUS=" + std::string(reason));
+  NotifyUnlessBusy("READY=1\nWATCHDOG=1\nSTATUS=" + std::string(reason));
 }
-void NotifyWatchdog() { Notify("WATCHDOG=1"); }
+void NotifyWatchdog() { NotifyUnlessBusy("WATCHDOG=1"); }
 void NotifyStopping() { Notify("STOPPING=1"); }
 void NotifyExtendTimeout(std::chrono::microseconds duration) {
-  Notify("EXTEND_TIMEOUT_USEC=" + std::to_string(duration.count()));
+  NotifyUnlessBusy("EXTEND_TIMEOUT_USEC=" + std::to_string(duration.count()));
 }
 
 std::optional<std::chrono::microseconds> WatchdogInterval() {
   std::uint64_t microseconds = 0;
   if (sd_watchdog_enabled(0, &microseconds) <= 0) return std::nullopt;
-  return std::chrono::microseconds(microseconds / 2);
+  // One that is left out costs nothing.
+  return std::chrono::microseconds(microseconds / 3);
 }
 
 void IgnoreBrokenPipes() { CHECK(::signal(SIGPIPE, SIG_IGN) != SIG_ERR); }

@@ -11,7 +11,8 @@
 namespace isotherm {
 
 /// Tells the service manager the state of a daemon. Without one (NOTIFY_SOCKET unset) each call
-/// does nothing. Thread-safe.
+/// does nothing. Ready and stopping are said once, and wait for a manager that is busy; the others
+/// are said again and again, and are left out meanwhile. Thread-safe.
 void NotifyReady(std::string_view status);
 void NotifyStatus(std::string_view status);
 /// The daemon runs, is alive, and waits for `reason` to pass: ready, with that as its status. To be
@@ -23,8 +24,8 @@ void NotifyStopping();
 /// or stops.
 void NotifyExtendTimeout(std::chrono::microseconds duration);
 
-/// Returns how often NotifyWatchdog should be called (half of WatchdogSec); nullopt if the unit has
-/// no watchdog.
+/// Returns how often NotifyWatchdog should be called (a third of WatchdogSec); nullopt if the unit
+/// has no watchdog.
 std::optional<std::chrono::microseconds> WatchdogInterval();
 
 /// From now on a pipe or terminal whose reader is gone makes writing fail instead of ending the

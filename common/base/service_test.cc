@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 
@@ -63,29 +64,63 @@ TEST(StopSignalTest, EndsWithoutASignal) {
   EXPECT_FALSE(signal.token().stop_requested());
 }
 
-TEST(ServiceTest, TellsTheServiceManager) {
-  const std::string path = testing::TempDir() + "isotherm_notify_" + std::to_string(getpid());
-  const int socket_fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  ASSERT_GE(socket_fd, 0);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  ASSERT_LT(path.copy(address.sun_path, sizeof(address.sun_path) - 1), sizeof(address.sun_path));
-  ASSERT_EQ(bind(socket_fd, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-  setenv("NOTIFY_SOCKET", path.c_str(), 1);
+/// A service manager that reads when the test says so; its socket has a path or an abstract name.
+class ServiceManagerTest : public ::testing::TestWithParam<bool> {
+ protected:
+  ServiceManagerTest() {
+    const std::string name =
+        (GetParam() ? "@" : testing::TempDir()) + "isotherm_notify_" + std::to_string(getpid());
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    name.copy(address.sun_path, sizeof(address.sun_path) - 1);
+    if (GetParam()) address.sun_path[0] = '\0';
+    if (!GetParam()) path_ = name;
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
+    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    setenv("NOTIFY_SOCKET", name.c_str(), 1);
+  }
+  ~ServiceManagerTest() override {
+    unsetenv("NOTIFY_SOCKET");
+    close(socket_);
+    if (!path_.empty()) unlink(path_.c_str());
+  }
+  std::string Read() const {
+    char received[256] = {};
+    const ssize_t size = recv(socket_, received, sizeof(received), MSG_DONTWAIT);
+    return size < 0 ? "" : std::string(received, static_cast<std::size_t>(size));
+  }
 
+ private:
+  const int socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  std::string path_;
+};
+INSTANTIATE_TEST_SUITE_P(Sockets, ServiceManagerTest, ::testing::Bool(),
+                         [](const auto& test) { return test.param ? "Abstract" : "WithPath"; });
+
+TEST_P(ServiceManagerTest, IsToldTheState) {
   NotifyReady("capturing");
-  char received[256] = {};
-  ASSERT_GT(recv(socket_fd, received, sizeof(received) - 1, 0), 0);
-  EXPECT_STREQ(received, "READY=1\nSTATUS=capturing");
-
-  unsetenv("NOTIFY_SOCKET");
-  close(socket_fd);
-  unlink(path.c_str());
+  EXPECT_EQ(Read(), "READY=1\nSTATUS=capturing");
+  NotifyStatus("tracked");
+  EXPECT_EQ(Read(), "STATUS=tracked");
+  NotifyWatchdog();
+  EXPECT_EQ(Read(), "WATCHDOG=1");
+  NotifyStopping();
+  EXPECT_EQ(Read(), "STOPPING=1");
 }
 
-TEST(ServiceTest, WatchdogIntervalIsHalfOfTheUnits) {
+TEST_P(ServiceManagerTest, F39OneThatDoesNotReadHoldsNobodyUp) {
+  // The test's own time limit is the bound.
+  constexpr int kMoreThanItHolds = 10'000;
+  for (int i = 0; i < kMoreThanItHolds; ++i) NotifyWatchdog();
+  while (!Read().empty()) {
+  }
+  NotifyStatus("it reads again");
+  EXPECT_EQ(Read(), "STATUS=it reads again");
+}
+
+TEST(ServiceTest, WatchdogIntervalIsAThirdOfTheUnits) {
   EXPECT_EQ(WatchdogInterval(), std::nullopt);
-  setenv("WATCHDOG_USEC", "10000000", 1);
+  setenv("WATCHDOG_USEC", "15000000", 1);
   EXPECT_EQ(WatchdogInterval(), std::chrono::seconds(5));
   unsetenv("WATCHDOG_USEC");
 }
