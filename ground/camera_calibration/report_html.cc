@@ -4,21 +4,11 @@
 
 #include "common/base/escape_html.h"
 #include "ground/camera_calibration/calibration_report.h"
+#include "ground/camera_calibration/html_page.h"
 #include "ground/camera_calibration/svg_plots.h"
 
 namespace isotherm {
 namespace {
-
-constexpr const char* kStyle =
-    "body{font-family:sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}"
-    "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .6em;"
-    "text-align:right}th:first-child,td:first-child{text-align:left}figure{display:inline-block;"
-    "margin:0 1em 1em 0;vertical-align:top}figcaption{font-size:.9em;color:#555;max-width:32em}"
-    "pre{background:#f4f4f4;padding:1em;overflow-x:auto}svg{max-width:100%;height:auto}";
-
-std::string Figure(const std::string& svg, std::string_view caption) {
-  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, caption);
-}
 
 std::string ParameterTable(const CalibratedCamera& report) {
   std::string html =
@@ -49,27 +39,28 @@ std::string CameraHtml(const CalibratedCamera& report) {
   constexpr double kMagnified = 100.0, kDistance_m = 0.6;
   std::string html = fmt::format("<h2>{} camera</h2>\n", EscapeHtml(report.name));
   html += ParameterTable(report);
+  html += HtmlFigure(
+      SvgMap(report.sigmas, "px"),
+      fmt::format("Uncertainty of the projection (one standard deviation, after the best "
+                  "rotation). 1 px is {:.2f} mm at {:.1f} m.",
+                  1e3 * kDistance_m / report.camera.lens[0], kDistance_m));
   html +=
-      Figure(SvgMap(report.sigmas, "px"),
-             fmt::format("Uncertainty of the projection (one standard deviation, after the best "
-                         "rotation). 1 px is {:.2f} mm at {:.1f} m.",
-                         1e3 * kDistance_m / report.camera.lens[0], kDistance_m));
-  html += Figure(SvgFeatures(report.features_px, report.residuals_px, report.size_px, kMagnified),
+      HtmlFigure(SvgFeatures(report.features_px, report.residuals_px, report.size_px, kMagnified),
                  fmt::format("Features of all views, and what they are off, {:.0f} times as long.",
                              kMagnified));
   if (report.cross_validation) {
-    html +=
-        Figure(SvgMap(report.cross_validation->difference, "px"),
-               fmt::format("Difference between calibrations from two halves of the views: {:.2f} "
-                           "times what is expected.",
-                           report.cross_validation->Ratio()));
+    html += HtmlFigure(
+        SvgMap(report.cross_validation->difference, "px"),
+        fmt::format("Difference between calibrations from two halves of the views: {:.2f} "
+                    "times what is expected.",
+                    report.cross_validation->Ratio()));
   }
   html += "<h3>From which views? (as in the thesis's figure 5.12)</h3>\n";
   for (int i = 0; i < LensParameterCount(report.camera.kind); ++i)
-    html += Figure(SvgHistogram(report.bootstrap.values.col(i),
-                                report.camera.lens[static_cast<std::size_t>(i)],
-                                LensParameterName(report.camera.kind, i)),
-                   "");
+    html += HtmlFigure(SvgHistogram(report.bootstrap.values.col(i),
+                                    report.camera.lens[static_cast<std::size_t>(i)],
+                                    LensParameterName(report.camera.kind, i)),
+                       "");
   if (!report.missing.empty()) {
     html += "<h3>What is missing</h3>\n<ul>\n";
     for (const std::string& missing : report.missing)
@@ -82,13 +73,11 @@ std::string CameraHtml(const CalibratedCamera& report) {
 }  // namespace
 
 std::string ReportHtml(const CalibrationReport& report) {
-  std::string html = fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Calibration</title>"
-      "<style>{}</style></head><body>\n<h1>Calibration</h1>\n<p>{}, {}, from {}</p>\n",
-      kStyle, EscapeHtml(report.date), EscapeHtml(report.software), EscapeHtml(report.source));
-  html += fmt::format("<pre>{}</pre>\n", EscapeHtml(ReportText(report)));
+  std::string html = fmt::format("<p>{}, {}, from {}</p>\n<pre>{}</pre>\n", EscapeHtml(report.date),
+                                 EscapeHtml(report.software), EscapeHtml(report.source),
+                                 EscapeHtml(ReportText(report)));
   for (const CalibratedCamera& camera : report.cameras) html += CameraHtml(camera);
-  return html + "</body></html>\n";
+  return HtmlPage("Calibration", html);
 }
 
 }  // namespace isotherm

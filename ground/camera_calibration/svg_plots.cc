@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/base/escape_html.h"
 
@@ -31,6 +32,102 @@ std::string Open(double width, double height) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" width=\"{:.0f}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
       width, height, width);
+}
+
+/// Maps an interval of values to an interval of a plot.
+struct Axis {
+  double low = 0.0, high = 1.0;
+  double begin = 0.0, end = 1.0;  ///< In the plot.
+
+  double At(double value) const {
+    return begin + (end - begin) * (value - low) / std::max(high - low, 1e-300);
+  }
+  /// Leaves a margin of a part of the interval on both sides.
+  void Widen(double part) {
+    const double margin = std::max(part * (high - low), 1e-6);
+    low -= margin;
+    high += margin;
+  }
+};
+
+Axis Spanning(const std::vector<GraphSeries>& series, int dimension) {
+  constexpr double kMargin = 0.05;
+  Axis axis{.low = std::numeric_limits<double>::max(), .high = -std::numeric_limits<double>::max()};
+  for (const GraphSeries& each : series) {
+    for (std::size_t i = 0; i < each.points.size(); ++i) {
+      const double reach = dimension == 1 && !each.sigmas.empty() ? 2.0 * each.sigmas[i] : 0.0;
+      axis.low = std::min(axis.low, each.points[i](dimension) - reach);
+      axis.high = std::max(axis.high, each.points[i](dimension) + reach);
+    }
+  }
+  if (axis.low > axis.high) return {};
+  axis.Widen(kMargin);
+  return axis;
+}
+
+/// The largest of 1, 2 and 5 times a power of ten of which about five fit.
+double TickStep(const Axis& axis) {
+  constexpr double kTicks = 5.0;
+  const double raw = (axis.high - axis.low) / kTicks;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= raw) return factor * power;
+  }
+  return power;
+}
+
+std::string DrawAxes(const Axis& x, const Axis& y, std::string_view x_title,
+                     std::string_view y_title) {
+  std::string svg = fmt::format(
+      "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#f8f8f8\" "
+      "stroke=\"#888\"/>\n",
+      x.begin, y.end, x.end - x.begin, y.begin - y.end);
+  const auto ticks = [](const Axis& axis) {
+    std::vector<double> values;
+    const double step = TickStep(axis);
+    const auto first = static_cast<long>(std::ceil(axis.low / step));
+    const auto last = static_cast<long>(std::floor(axis.high / step));
+    for (long i = first; i <= last; ++i) values.push_back(static_cast<double>(i) * step);
+    return values;
+  };
+  for (const double value : ticks(x)) {
+    svg += fmt::format(
+        "<path d=\"M{0:.1f} {1:.0f}V{2:.0f}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3:.0f}\" "
+        "text-anchor=\"middle\">{4:g}</text>\n",
+        x.At(value), y.begin, y.end, y.begin + 15.0, value);
+  }
+  for (const double value : ticks(y)) {
+    svg += fmt::format(
+        "<path d=\"M{1:.0f} {0:.1f}H{2:.0f}\" stroke=\"#ddd\"/><text x=\"{3:.0f}\" y=\"{0:.1f}\" "
+        "dy=\"4\" text-anchor=\"end\">{4:g}</text>\n",
+        y.At(value), x.begin, x.end, x.begin - 5.0, value);
+  }
+  return svg + fmt::format(
+                   "<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"middle\">{}</text><text x=\"4\" "
+                   "y=\"12\">{}</text>\n",
+                   0.5 * (x.begin + x.end), y.begin + 32.0, EscapeHtml(x_title),
+                   EscapeHtml(y_title));
+}
+
+std::string DrawSeries(const GraphSeries& series, const Axis& x, const Axis& y,
+                       std::string_view colour) {
+  std::string svg, path;
+  for (std::size_t i = 0; i < series.points.size(); ++i) {
+    const Eigen::Vector2d& point = series.points[i];
+    const double at_x = x.At(point.x()), at_y = y.At(point.y());
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", at_x, at_y);
+    if (!series.sigmas.empty()) {
+      svg += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\" stroke=\"{}\" opacity=\"0.5\"/>\n",
+                         at_x, y.At(point.y() - 2.0 * series.sigmas[i]),
+                         y.At(point.y() + 2.0 * series.sigmas[i]), colour);
+    }
+    if (!series.is_line)
+      svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n", at_x,
+                         at_y, colour);
+  }
+  if (series.is_line)
+    svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\"/>\n", path, colour);
+  return svg;
 }
 
 }  // namespace
@@ -113,6 +210,29 @@ std::string SvgHistogram(const Eigen::VectorXd& values, double marked, std::stri
       "<text x=\"{4:.0f}\" y=\"{2:.0f}\" text-anchor=\"end\">{5:.5g}</text><text x=\"{6:.0f}\" "
       "y=\"{7:.0f}\" text-anchor=\"middle\">{8}</text>\n",
       x, kHeight, kHeight + 13.0, low, kPlot, high, 0.5 * kPlot, kHeight + 29.0, EscapeHtml(title));
+  return svg + "</svg>\n";
+}
+
+std::string SvgGraph(const std::vector<GraphSeries>& series, std::string_view x_title,
+                     std::string_view y_title) {
+  constexpr double kHeight = 260.0, kLeft = 48.0, kTop = 22.0, kBottom = 40.0, kLegend = 18.0;
+  constexpr std::array<const char*, 4> kColours = {"#c33", "#246", "#2a2", "#a70"};
+  Axis x = Spanning(series, 0), y = Spanning(series, 1);
+  x.begin = kLeft;
+  x.end = kWidth - 6.0;
+  y.begin = kHeight - kBottom;
+  y.end = kTop;
+  std::string svg = Open(kWidth, kHeight + kLegend * static_cast<double>(series.size()));
+  svg += DrawAxes(x, y, x_title, y_title);
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const char* colour = kColours.at(i % kColours.size());
+    svg += DrawSeries(series[i], x, y, colour);
+    svg += fmt::format(
+        "<circle cx=\"{0:.0f}\" cy=\"{1:.0f}\" r=\"4\" fill=\"{2}\"/><text x=\"{3:.0f}\" "
+        "y=\"{1:.0f}\" dy=\"4\">{4}</text>\n",
+        kLeft, kHeight + kLegend * (static_cast<double>(i) + 0.5), colour, kLeft + 10.0,
+        EscapeHtml(series[i].name));
+  }
   return svg + "</svg>\n";
 }
 

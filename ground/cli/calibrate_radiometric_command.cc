@@ -14,10 +14,9 @@
 #include "common/rig/rig_calibration.pb.h"
 #include "ground/cli/calibrated_rig_file.h"
 #include "ground/cli/command.h"
+#include "ground/cli/radiometric_html.h"
 #include "ground/cli/today.h"
 #include "ground/json/json.h"
-#include "ground/radiometric_calibration/housing_drift_fit.h"
-#include "ground/radiometric_calibration/radiometric_session.h"
 
 namespace isotherm {
 namespace {
@@ -57,14 +56,8 @@ Examples:
   isotherm calibrate radiometric black-body.csv --rig rig.textproto --emissivity 0.95 --apply
   isotherm calibrate radiometric --warm-up warm-up.mcap --rig rig.textproto --apply)";
 
-/// Holds what was asked for and found.
-struct Findings {
-  std::optional<RadiometricReport> readings;
-  std::optional<DriftReport> drift;
-};
-
 struct RadiometricArguments {
-  std::string table, warm_up, rig, output, json;
+  std::string table, warm_up, rig, output, json, html;
   RadiometricConditions conditions;
   bool apply = false;
 };
@@ -188,7 +181,7 @@ void AppendReadings(const RadiometricReport& report, Json& json) {
   json["sigma_k"] = report.curve.correction.sigmas_k;
 }
 
-Json ReportJson(const Findings& found) {
+Json ReportJson(const RadiometricFindings& found) {
   Json json;
   if (found.readings) AppendReadings(*found.readings, json);
   if (!found.drift) return json;
@@ -223,7 +216,7 @@ void SetReadings(const RadiometricReport& report, CalibrationRecord& record,
   for (const double value : report.influence->covariance.reshaped()) record.add_covariance(value);
 }
 
-void SetFindings(const RadiometricArguments& arguments, const Findings& found,
+void SetFindings(const RadiometricArguments& arguments, const RadiometricFindings& found,
                  RigCalibration& rig) {
   ThermalSensorProperties& sensor = *rig.mutable_thermal_sensor();
   if (found.drift && found.drift->IsKnown()) {
@@ -274,7 +267,7 @@ Status CheckArguments(const RadiometricArguments& arguments) {
 }
 
 /// Writes the calibration, if that was asked for.
-Status WriteFindings(const RadiometricArguments& arguments, const Findings& found,
+Status WriteFindings(const RadiometricArguments& arguments, const RadiometricFindings& found,
                      const std::optional<Rig>& rig) {
   const bool has_readings =
       found.readings && (found.readings->curve.IsKnown() || found.readings->influence);
@@ -297,11 +290,11 @@ Status WriteFindings(const RadiometricArguments& arguments, const Findings& foun
 }
 
 /// Finds what was asked for. `rig` as for CalibrateReadings.
-Result<Findings> Find(const RadiometricArguments& arguments, std::optional<Rig>& rig) {
+Result<RadiometricFindings> Find(const RadiometricArguments& arguments, std::optional<Rig>& rig) {
   ProgressBar bar("calibrating", 0, "");
   const bool has_both = !arguments.warm_up.empty() && !arguments.table.empty();
   const double first_part = has_both ? 0.5 : 0.0;
-  Findings found;
+  RadiometricFindings found;
   if (!arguments.warm_up.empty()) {
     auto drift = FindHousingDrift(arguments.warm_up, rig, [&](double fraction) {
       bar.Update(has_both ? first_part * fraction : fraction);
@@ -330,10 +323,17 @@ int RunRadiometric(const RadiometricArguments& arguments) {
     if (!loaded) return Fail(loaded.error());
     rig = std::move(*loaded);
   }
-  const Result<Findings> found = Find(arguments, rig);
+  const Result<RadiometricFindings> found = Find(arguments, rig);
   if (!found) return Fail(found.error());
-  if (found->readings) fmt::print("{}", ReportText(arguments.conditions, *found->readings));
-  if (found->drift) fmt::print("{}", DriftText(*found->drift));
+  std::string text;
+  if (found->readings) text += ReportText(arguments.conditions, *found->readings);
+  if (found->drift) text += DriftText(*found->drift);
+  fmt::print("{}", text);
+  if (!arguments.html.empty()) {
+    if (Status status = WriteFile(arguments.html, RadiometricHtml(*found, text)); !status.ok())
+      return Fail(status);
+    fmt::print("{}: written\n", arguments.html);
+  }
   if (!arguments.json.empty()) {
     if (Status status = WriteFile(arguments.json, JsonText(ReportJson(*found))); !status.ok())
       return Fail(status);
@@ -360,6 +360,7 @@ void AddCalibrateRadiometricCommand(CLI::App& calibrate, CommandBody& body) {
   command->add_option("-o,--output", arguments->output, "Write the calibration here instead")
       ->excludes(apply_option);
   command->add_option("--json", arguments->json, "Write all values (.json)");
+  command->add_option("--html", arguments->html, "Write the report with plots (.html)");
   command
       ->add_option("--emissivity", arguments->conditions.emissivity,
                    "Of the black body, in the camera's band")

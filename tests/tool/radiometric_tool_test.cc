@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "common/rig/rig_calibration.h"
@@ -43,6 +44,11 @@ class RadiometricToolTest : public ToolRun {
             std::to_string(kGain) + " --set scene.hole_radius_m=" + std::to_string(radius_m) +
             " --set scene.hot_celsius=" + std::to_string(hot_celsius));
   }
+  static int Count(const std::string& text, const std::string& part) {
+    int count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  }
   ThermalSensorModel Sensor(const std::string& file) const {
     const Result<Rig> rig = LoadRigCalibration(folder_ / file);
     EXPECT_TRUE(rig) << rig.error().message();
@@ -69,7 +75,7 @@ TEST_F(RadiometricToolTest, WhatIsWrongWithReadingsIsFoundBeforeBlackBodies) {
   EXPECT_THAT(told.out, AllOf(HasSubstr("a line"), HasSubstr("nothing is written")));
   EXPECT_TRUE(Sensor("rig.textproto").radiometric_correction.empty());
 
-  RunWell(calibrate + "--calibrator-sigma 0.1 --apply --json found.json");
+  RunWell(calibrate + "--calibrator-sigma 0.1 --apply --json found.json --html found.html");
   EXPECT_TRUE(fs::exists(folder_ / "rig.textproto.bak"));
   const ThermalSensorModel sensor = Sensor("rig.textproto");
   EXPECT_NEAR(sensor.scene_influence.near_fraction, 0.0387, 0.003) << told.out;
@@ -85,6 +91,14 @@ TEST_F(RadiometricToolTest, WhatIsWrongWithReadingsIsFoundBeforeBlackBodies) {
   EXPECT_TRUE(json["scene_influence"]["known"]);
   EXPECT_LT(json["scene_influence"]["apart_after_k"], 0.3);
   EXPECT_GT(json["scene_influence"]["apart_before_k"], 1.5);
+
+  std::ostringstream html;
+  html << std::ifstream(folder_ / "found.html").rdbuf();
+  EXPECT_THAT(html.str(), AllOf(HasSubstr("as measured"), HasSubstr("The black body at 120 °C"),
+                                HasSubstr("a line")));
+  // A row each, and the curve's.
+  EXPECT_EQ(Count(html.str(), "r=\"3.5\""), 7 + 2 * 4);
+  EXPECT_EQ(Count(html.str(), "nan"), 0);
 
   RunWell("simulate -o again.mcap --duration 1 --set rig_file=rig.textproto --scene plane");
   EXPECT_THAT(Run("inspect again.mcap").out, HasSubstr("readings corrected by"));
