@@ -147,7 +147,7 @@ endif()
 
 # Tests of what has several threads: the thread sanitizer watches these (tests/lint says which are missing).
 set(isotherm_threaded_tests backfill_test base_test block_spiller_test camera_process_test clock_link_test concurrency_test
-  edge_pipeline_test edge_source_test endpoints_test flow_window_test frame_counters_test ground_pipeline_test hostile_test
+  edge_monitor_test edge_pipeline_test edge_source_test endpoints_test flow_window_test frame_counters_test ground_pipeline_test hostile_test
   link_emulator_test link_test live_scan_test nuc_control_test openni_test process_test reconstruction_loop_test recording_loop_test
   result_writer_test rig_clock_test rig_commander_test rig_gate_test service_test spool_test thermal_test trust_test
   tsdf_test two_grounds_test wire_version_test)

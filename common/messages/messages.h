@@ -219,7 +219,7 @@ struct EdgeStatus {
   StreamStatus depth;
   StreamStatus thermal;
   NucReport nuc;
-  double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1.
+  double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1; NaN: no record.
   std::uint64_t spool_frames = 0;  ///< Recorded, and the ground lacks them as far as is known.
   ClockReport clock;
   std::optional<ClockEcho> clock_echo;

@@ -101,6 +101,8 @@ class Scan {
   enum class Next { kLeave, kAnotherScan };
 
   Next RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer);
+  /// Stops a scan that is not to go on without a recording.
+  void StopIfFull();
   /// Ends the cameras of a scan that was ordered to stop; what they have sent is still under way.
   /// Returns false if one does not end.
   bool EndCameras();
@@ -163,6 +165,7 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
     for (const Command& order : pipeline_.TakeScanOrders()) {
       pipeline_.Answer(orders_.Execute(order));
     }
+    StopIfFull();
     if (orders_.state() == ScanOrders::State::kStarting) return Next::kAnotherScan;
     const bool ordered = orders_.state() == ScanOrders::State::kEnding;
     // The service manager starts the program anew.
@@ -183,6 +186,13 @@ Scan::Next Scan::RunUntilTold(EdgeMonitor& monitor, RigAnnouncer& announcer) {
     Pause(parts_.stop, stop_limits::kTick);
   }
   return Next::kLeave;
+}
+
+void Scan::StopIfFull() {
+  if (parts_.options.spool().when_full() != STOP_SCAN) return;
+  const std::optional<SpoolStatus> recording = pipeline_.recording();
+  if (!recording || !recording->is_full || orders_.state() != ScanOrders::State::kScanning) return;
+  static_cast<void>(orders_.Execute({.kind = CommandKind::kStopScan}));
 }
 
 bool Scan::EndCameras() {

@@ -25,6 +25,7 @@
 #include "edge/daemon/capture.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
+#include "edge/daemon/idle_rig.h"
 #include "edge/daemon/open_source.h"
 #include "edge/daemon/resume_scan.h"
 #include "edge/daemon/session_start.h"
@@ -245,6 +246,13 @@ std::jthread CompleteInBackground(const InterruptedScan& before, ServedState& st
   });
 }
 
+/// Returns whether the first scan waits for its order. One that was interrupted had its own.
+bool IsToWait(const EdgeOptions& options, const Clock& clock) {
+  return options.link().wait_for_order() &&
+         !FindInterruptedScan(options.spool().record(), options.link().edge_id(), clock.Now(),
+                              FromSeconds(options.spool().resume_s()));
+}
+
 /// Opens the source and runs a scan of it. Joins the link if that has not been done.
 CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& environment,
                    const Clock& clock, const std::optional<Rig>& calibration,
@@ -265,12 +273,15 @@ CaptureEnd RunScan(const EdgeOptions& options, const TransportEnvironment& envir
                       .rig_thermal_delay_s = rig ? rig->thermal_delay_s : 0.0,
                       .clock = ReadKernelClock()};
   LogClock(options, session.clock);
-  // Only a process's first scan can be one that another process has begun.
+  // Only a process's first scan can be one that another process has begun; then it did not wait.
   std::optional<InterruptedScan> before;
   if (!link) before = FindScanToResume(options, session);
   if (before) {
     Resume(*before, session);
     CountBefore(*before, session, counters);
+  } else if (!link && options.link().wait_for_order()) {
+    // What seemed to be interrupted cannot be gone on with.
+    return {.another_scan = true};
   }
 
   if (!link) {
@@ -311,10 +322,18 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   CaptureEnd end{.another_scan = true};
   {
     std::unique_ptr<Publisher> link;
+    bool waits = IsToWait(options, clock);
     while (end.another_scan) {
+      if (waits) {
+        auto connected = Connect(options, environment, clock, process.state);
+        if (!connected) return Fail(connected.error());
+        link = std::move(*connected);
+        if (!WaitForScanOrder(*link, clock, stop)) return 0;
+      }
       const CaptureEnd scan =
           RunScan(options, environment, clock, *calibration, stop, leaving, process, link);
       end = {end.status != 0 ? end.status : scan.status, scan.another_scan};
+      waits = !link && options.link().wait_for_order();
     }
   }
   // The link has ended in its own time.

@@ -90,6 +90,7 @@ struct CommandLine {
   std::optional<int> domain;
   bool exit_at_end = false;
   bool wait_for_ground = false;
+  bool wait_for_order = false;
   bool list_sources = false;
   bool list_devices = false;
   std::string camera_process, camera_options;
@@ -127,6 +128,8 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--exit-at-end", line.exit_at_end, "Leave when the source has ended");
   app.add_flag("--wait-for-ground", line.wait_for_ground,
                "Hold back the first frame until a ground station is there");
+  app.add_flag("--wait-for-order", line.wait_for_order,
+               "Begin no scan before isotherm scan --start");
   DeclareLogLevel(app, line.shared);
   app.add_flag("--list-sources", line.list_sources,
                "List sources, scenes and connected cameras, then leave");
@@ -196,6 +199,7 @@ Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
   if (options.link().edge_id().empty()) options.mutable_link()->set_edge_id(HostRigName());
   if (line.domain) options.mutable_link()->set_domain(*line.domain);
   if (line.wait_for_ground) options.mutable_link()->set_wait_for_ground(true);
+  if (line.wait_for_order) options.mutable_link()->set_wait_for_order(true);
   if (line.exit_at_end) options.set_exit_at_end(true);
   return OkStatus();
 }

@@ -156,7 +156,8 @@ EdgeSituation EdgeMonitor::Situation() const {
                           .ground_present = link.ground_present,
                           .ground_problem = link.ground_problem,
                           .feedback = pipeline_.feedback().newest(),
-                          .feedback_age = pipeline_.feedback().age(clock_.Now())};
+                          .feedback_age = pipeline_.feedback().age(clock_.Now()),
+                          .receipt_age = link.receipt_age};
   if (const auto recording = pipeline_.recording()) {
     situation.disk_left_s = recording->left_s;
     if (!recording->brief.empty()) situation.problems.push_back(recording->brief);

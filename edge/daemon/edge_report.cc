@@ -57,9 +57,19 @@ std::string StateText(const CameraReport& camera) {
   return camera.state == CameraState::kBlind ? " (camera blind)" : "";
 }
 
+/// "LOST for 12 s, what it lacks is recorded"; "absent" before it was there, and when it may leave.
+std::string AbsentText(const EdgeSituation& situation) {
+  if (!situation.receipt_age || situation.status.scan_state != ScanState::kScanning)
+    return "absent";
+  return fmt::format("LOST for {:.0f} s, {}", ToSeconds(*situation.receipt_age),
+                     std::isfinite(situation.status.spool_fill_ratio)
+                         ? "what it lacks is recorded"
+                         : "and there is no recording");
+}
+
 std::string GroundText(const EdgeSituation& situation) {
   if (!situation.ground_problem.empty()) return situation.ground_problem;
-  if (!situation.ground_present) return "absent";
+  if (!situation.ground_present) return AbsentText(situation);
   return situation.feedback ? FeedbackText(*situation.feedback) : "no feedback yet";
 }
 
@@ -214,7 +224,7 @@ std::vector<std::string> StatusParts(const EdgeSituation& situation) {
   if (situation.ground_present && situation.feedback) {
     parts = FeedbackParts(*situation.feedback, std::move(urgent));
   } else {
-    parts = {situation.ground_present ? "ground: no feedback yet" : "ground: absent"};
+    parts = {"ground: " + (situation.ground_present ? "no feedback yet" : AbsentText(situation))};
     parts.insert(parts.end(), urgent.begin(), urgent.end());
   }
   parts.push_back(fmt::format("{:.0f}+{:.0f}/s", status.depth.rate_hz, status.thermal.rate_hz));

@@ -54,10 +54,11 @@ struct EdgeSituation {
   SensorCounters depth;
   SensorCounters thermal;
   bool ground_present = false;
-  std::string ground_problem{};             ///< Says why it is not well; empty: it is.
-  std::optional<Feedback> feedback;         ///< The newest.
-  std::optional<Nanoseconds> feedback_age;  ///< nullopt: not known.
-  std::vector<std::string> problems{};      ///< Each says in a few words why this is not well.
+  std::string ground_problem{};              ///< Says why it is not well; empty: it is.
+  std::optional<Feedback> feedback;          ///< The newest.
+  std::optional<Nanoseconds> feedback_age;   ///< nullopt: not known.
+  std::optional<Nanoseconds> receipt_age{};  ///< Since it was heard last; nullopt: not yet.
+  std::vector<std::string> problems{};       ///< Each says in a few words why this is not well.
   /// Until the recording ends for lack of space; NaN = not known.
   double disk_left_s = std::numeric_limits<double>::quiet_NaN();
 };

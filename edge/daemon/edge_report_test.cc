@@ -163,6 +163,14 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
   EXPECT_THAT(Line({}, feedback), HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
   EXPECT_THAT(Line({}, feedback, false), HasSubstr("ground: absent"));
+  EdgeSituation lost = Situation({}, feedback);
+  lost.ground_present = false;
+  lost.receipt_age = std::chrono::milliseconds(12'300);
+  EXPECT_THAT(StatusLine(lost), HasSubstr("ground: absent")) << "the scan is over";
+  lost.status.scan_state = ScanState::kScanning;
+  EXPECT_THAT(StatusLine(lost), HasSubstr("ground: LOST for 12 s, and there is no recording"));
+  lost.status.spool_fill_ratio = 0.0;
+  EXPECT_THAT(StatusLine(lost), HasSubstr("ground: LOST for 12 s, what it lacks is recorded"));
   EXPECT_THAT(Line({}, feedback, true, "refuses this scan"),
               HasSubstr("ground: refuses this scan |"));
   EXPECT_THAT(Line({}), HasSubstr("no feedback yet"));

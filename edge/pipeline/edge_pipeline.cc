@@ -192,6 +192,7 @@ bool EdgePipeline::IsCaptured() const {
 }
 
 double EdgePipeline::spool_fill_ratio() const {
+  if (!spool_ || !spool_->status().problem.empty()) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(spool_queue_.size()) / static_cast<double>(spool_capacity_);
 }
 

@@ -229,7 +229,10 @@ void Spool::EndAtReserve() {
                   "recordings, or fetch them and set spool.when_full=DELETE_FETCHED",
                   what, path_.empty() ? "the recording" : path_.string()));
   if (first_error_.ok()) first_error_ = closed.ok() ? problem_ : closed;
-  LOG(Spool, Error) << problem_.message() << "; publishing goes on";
+  LOG(Spool, Error) << problem_.message()
+                    << (parts_.options.when_full() == STOP_SCAN
+                            ? "; the scan is stopped (spool.when_full=STOP_SCAN)"
+                            : "; publishing goes on");
 }
 
 Status Spool::WriteFrame(const EncodedFrame& frame) {
@@ -364,7 +367,8 @@ std::string Spool::Brief() const {
 }
 
 void Spool::UpdateStatus() {
-  newest_status_.Set({path_, free_bytes_, disk_.left_s(), problem_.message(), Brief()});
+  newest_status_.Set(
+      {path_, free_bytes_, disk_.left_s(), problem_.message(), Brief(), at_reserve_});
 }
 
 }  // namespace isotherm

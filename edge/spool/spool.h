@@ -73,6 +73,7 @@ struct SpoolStatus {
   /// Both say what is wrong and what to do, in a sentence and in a few words; empty if nothing is.
   std::string problem;
   std::string brief;
+  bool is_full = false;  ///< The recording has ended for lack of space.
 };
 
 /// The recording on the edge's own disk, with the shutter events that the thermal frames tell of

@@ -294,6 +294,7 @@ TEST_F(SpoolTest, F41AQuotaThatIsUsedUpBeforehandGetsNoFrame) {
   Record(0);
   EXPECT_EQ(files_.size(), 0U);
   EXPECT_EQ(depth().record_failed, 1U);
+  EXPECT_TRUE(spool_->status().is_full);
 }
 
 TEST_F(SpoolTest, F41OlderRecordingsThatWereFetchedMakeRoom) {

@@ -13,7 +13,7 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kScanFooter =
-    R"(A scan begins when isotherm-edge starts and ends when it leaves, when its recording has been played, or by this order.
+    R"(A scan begins when isotherm-edge starts (with --wait-for-order: by this order) and ends when it leaves, when its recording has been played, or by this order.
 When it ends, the rig closes its recording and isotherm-ground writes the results. The next scan is a scan of its own, with
 a recording and results of its own.
 
