@@ -124,6 +124,7 @@ awk '
     show("  longest time without one for that reason", "s", "frames.thermal.longest_pause_s")
     show("waiting from arrival to its turn, median", "ms", "link.waiting.p50_ms")
     show("waiting from arrival to its turn, 99 %", "ms", "link.waiting.p99_ms")
+    show("depth capture to arrival, 99 %", "ms", "link.capture_to_ground.depth.p99_ms")
     show("depth capture to advice on the edge, median", "ms", "link.feedback.latency_p50_ms")
     show("depth capture to advice on the edge, 99 %", "ms", "link.feedback.latency_p99_ms")
   }' "$out/live_alone.txt" "$out/live_beside_load.txt" "$out/live_middle_third.txt"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs both daemons for as long as you like over an emulated radio link that loses packets, breaks down, is too narrow,
-# and whose ends are killed again and again; then says what is missing (nothing must be) and how much memory has grown.
+# and whose ends are killed again and again (three of four grounds find their recording when they are started again); then
+# says what is missing (nothing must be) and how much memory has grown.
 # Takes root, for network namespaces.
 #
 #   deploy/soak.sh                  ten minutes, outages of up to a minute

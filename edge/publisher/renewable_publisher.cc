@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "common/base/pause.h"
 #include "common/base/processor_time.h"
+#include "common/transport/address_watch.h"
 
 namespace isotherm {
 namespace {
@@ -81,29 +82,16 @@ void RenewablePublisher::RunLink(const std::stop_token& stop, const PublisherHan
   const std::stop_callback forward(stop, [&ended] { ended.request_stop(); });
   const std::jthread watch([this, &ended] {
     NameThread("addresses");
-    std::optional<SteadyTime> differs_since;
+    AddressWatch addresses(link_addresses());
     while (!ended.stop_requested()) {
       Pause(ended.get_token(), kLookInterval);
-      if (HasChanged(differs_since)) ended.request_stop();
+      // Of a ground that follows this rig.
+      const Nanoseconds silent_for = stats().receipt_age.value_or(AddressWatch::kSilence);
+      if (addresses.HasMoved(addresses_(), silent_for, clock_.SteadyNow())) ended.request_stop();
     }
   });
   link()->Run(ended.get_token(), handlers);
   ended.request_stop();
-}
-
-bool RenewablePublisher::HasChanged(std::optional<SteadyTime>& differs_since) const {
-  const std::string addresses = addresses_();
-  const SteadyTime now = clock_.SteadyNow();
-  {
-    MutexLock lock(mutex_);
-    if (addresses == link_addresses_) {
-      differs_since.reset();
-      return false;
-    }
-  }
-  if (!differs_since) differs_since = now;
-  if (addresses.empty()) return false;  // There is nothing to join.
-  return now - *differs_since >= kSilence && stats().receipt_age.value_or(kSilence) >= kSilence;
 }
 
 bool RenewablePublisher::DropLink(const std::stop_token& stop) {

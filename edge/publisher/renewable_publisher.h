@@ -17,10 +17,6 @@ namespace isotherm {
 /// made anew goes on with the counts of the one before. Thread-safe as any publisher.
 class RenewablePublisher final : public Publisher {
  public:
-  /// A link is made anew if this computer's addresses have been others for so long, and no ground
-  /// that follows this rig has been heard for as long.
-  static constexpr Nanoseconds kSilence = std::chrono::seconds(4);
-
   /// Called several times a second while it waits, with the reason.
   using Waiting = std::function<void(const Status& reason)>;
   /// Returns when there is a link, or an error when stop is requested. The one before is gone.
@@ -63,12 +59,14 @@ class RenewablePublisher final : public Publisher {
     MutexLock lock(mutex_);
     return link_;
   }
+  std::string link_addresses() const {
+    MutexLock lock(mutex_);
+    return link_addresses_;
+  }
   /// Waits for a link. Returns whether there is one.
   bool MakeLink(const std::stop_token& stop);
   /// Serves the ground until the network has changed, or stop is requested.
   void RunLink(const std::stop_token& stop, const PublisherHandlers& handlers);
-  /// Watches the network; `differs_since` is the caller's.
-  bool HasChanged(std::optional<SteadyTime>& differs_since) const;
   /// Gives the link up. Returns false if stop was requested before others had let go of it.
   bool DropLink(const std::stop_token& stop);
 

@@ -24,6 +24,7 @@ struct FeedbackMoment {
   double rotation_rate_deg_s = 0.0;
   double frame_interval_s = 0.0;
   bool ground_is_behind = false;
+  bool link_is_narrow = false;  ///< Frames are left for later, because it does not carry all.
 };
 
 /// Puts the feedback on a scan together from the model. What would take long is done a part at a

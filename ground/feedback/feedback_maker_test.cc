@@ -69,6 +69,7 @@ class FeedbackMakerTest : public ::testing::Test {
     FeedbackMoment moment;
     moment.header = frame.header;
     moment.report = pipeline_->ProcessDepth(frame);
+    moment.link_is_narrow = link_is_narrow_;
     return maker_->Make(moment, pipeline_->model());
   }
   Feedback Show(double roll_deg = 0.0) {
@@ -98,6 +99,7 @@ class FeedbackMakerTest : public ::testing::Test {
   std::unique_ptr<FeedbackMaker> maker_;
   RigidTransform last_true_;
   double beside_m_ = 0.0;
+  bool link_is_narrow_ = false;
   int frame_ = 0;
 };
 
@@ -216,6 +218,16 @@ TEST_F(FeedbackMakerTest, TheImageShowsThatTheRigIsLost) {
   // The view is the same, so that only the frame around it differs.
   EXPECT_NE(tracked.image, lost.image);
   EXPECT_EQ(tracked.view.never_measured, lost.view.never_measured);
+}
+
+TEST_F(FeedbackMakerTest, WhileTheLinkIsTooNarrowTheImageIsSmaller) {
+  options_.mutable_feedback()->mutable_expert()->set_image_width_px(640);
+  Start();
+  EXPECT_GT(Show().image.size(), 1000U);
+  link_is_narrow_ = true;
+  const Feedback narrow = Show();
+  EXPECT_LE(narrow.image.size(), 1000U);
+  EXPECT_TRUE(ReadPngHead(narrow.image).has_value());
 }
 
 TEST_F(FeedbackMakerTest, WithoutAWidthThereIsNoImage) {

@@ -96,6 +96,8 @@ void DescribeSituation(const GroundSituation& situation, live::State& state) {
     load.set_problem(*situation.problem);
   } else if (situation.folder_problem) {
     load.set_problem(*situation.folder_problem);
+  } else if (situation.rebuilt_fraction) {
+    load.set_problem(RebuildText(*situation.rebuilt_fraction));
   }
 }
 

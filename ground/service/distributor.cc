@@ -2,9 +2,9 @@
 
 #include <memory>
 #include <tuple>
+#include <utility>
 
 #include "common/base/log.h"
-#include "ground/service/live_scan.h"
 #include "ground/service/scan_board.h"
 
 namespace isotherm {
@@ -30,8 +30,12 @@ void Distributor::OnRig(const RigDescription& rig) {
     SendMark(end);
     return;
   }
+  ScanFolder folder = folders_.Begin(rig.session, clock_.Now());
   start_ = {.rig = rig,
-            .folder = SessionFolder(options_, single_scan_, rig.session, clock_.Now()),
+            .folder = std::move(folder.path),
+            .earlier_files = std::move(folder.earlier_files),
+            .lock = std::move(folder.lock),
+            .is_complete = folder.is_complete,
             .recording = std::make_shared<RecordingTracker>()};
   session_ = rig.session;
   recording_behind_ = false;
@@ -72,6 +76,12 @@ void Distributor::OnItem(SessionItem item) {
     }
   }
   early_.push_back(std::move(item));
+}
+
+void Distributor::OnClock(const SessionClock& clock) {
+  if (over_) return;
+  recording_.Offer(clock, {}, stop_);
+  Reconstruct(clock);
 }
 
 void Distributor::OnMark(const SessionMark& mark) {

@@ -11,6 +11,7 @@
 #include "common/time/thread_progress.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/service/recording_queue.h"
+#include "ground/service/scan_folders.h"
 #include "ground/service/session_item.h"
 
 namespace isotherm {
@@ -35,6 +36,7 @@ class Distributor {
               const DistributorSinks& sinks)
       : options_(options),
         single_scan_(single_scan),
+        folders_(options, single_scan),
         clock_(clock),
         reconstruction_(sinks.reconstruction),
         recording_(sinks.recording),
@@ -48,7 +50,7 @@ class Distributor {
   void OnRig(const RigDescription& rig);
   /// Takes a frame or an odometry pose.
   void OnItem(SessionItem item);
-  void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
+  void OnClock(const SessionClock& clock);
   /// For the recording.
   void OnMark(const SessionMark& mark);
   /// Takes a frame that came too late for the reconstruction: it is only recorded.
@@ -70,6 +72,7 @@ class Distributor {
 
   const GroundOptions& options_;
   const bool single_scan_;
+  ScanFolders folders_;
   const Clock& clock_;
   SessionQueue& reconstruction_;
   RecordingQueue& recording_;

@@ -13,7 +13,9 @@
 #include "common/base/pause.h"
 #include "common/base/service.h"
 #include "common/concurrency/worker.h"
+#include "common/transport/address_watch.h"
 #include "common/transport/join_domain.h"
+#include "common/transport/network_addresses.h"
 #include "ground/console/console.h"
 #include "ground/export/result_files.h"
 #include "ground/service/console_state.h"
@@ -48,31 +50,21 @@ constexpr RecordingQueue::Limits kRecordingLimits{.items = 450, .bytes = 128U <<
 /// A disk may be slow for longer than the service manager lets the service be silent, but not for
 /// ever.
 Nanoseconds DiskLimit() {
-  // Twelve times the watchdog's interval: a minute with the shipped unit's. A laptop's disk may
+  // Eighteen times the watchdog's interval: a minute with the shipped unit's. A laptop's disk may
   // spin up or a stick collect for seconds; longer is a fault. Not tuned.
-  constexpr int kIntervals = 12;
-  constexpr std::chrono::microseconds kUnwatched = 5s;
+  constexpr int kIntervals = 18;
+  constexpr std::chrono::microseconds kUnwatched = 3333ms;
   return kIntervals * Nanoseconds(WatchdogInterval().value_or(kUnwatched));
-}
-
-/// Somebody who waits for one scan wants to know at once that the network is not there.
-Result<std::unique_ptr<Participant>> Join(int domain, const ServiceMode& mode,
-                                          const TransportEnvironment& environment,
-                                          const Clock& clock, const std::stop_token& stop) {
-  const Announcement announcement{Role::kGround, "", HostName()};
-  if (mode.single_scan) return Participant::Create(environment, domain, announcement);
-  return JoinDomain(
-      environment, domain, clock, stop,
-      [](const Status& reason) { NotifyWaiting(reason.message()); }, announcement);
 }
 
 /// The service's threads and what joins them. Thread-bound to the main thread.
 class GroundService {
  public:
-  GroundService(const GroundOptions& options, const ServiceMode& mode, const Clock& clock,
-                StopSignal& signal)
+  GroundService(const GroundOptions& options, const ServiceMode& mode,
+                const TransportEnvironment& environment, const Clock& clock, StopSignal& signal)
       : options_(options),
         mode_(mode),
+        environment_(environment),
         clock_(clock),
         signal_(signal),
         health_(DiskLimit()),
@@ -84,7 +76,7 @@ class GroundService {
         output_folder_(options.live().output_dir(), &PrepareOutputDir) {}
 
   /// Joins the link.
-  Status Open(const TransportEnvironment& environment);
+  Status Open();
   /// Serves until the signal, then lets everything end. The exit status.
   int Run();
 
@@ -94,6 +86,9 @@ class GroundService {
   /// Tells the service manager that all is well, while it is, and the operator how it goes.
   void GuardUntilStopped();
   void FeedWatchdog();
+  Result<std::unique_ptr<Participant>> JoinNetwork(bool waits);
+  /// Joins the link anew if this computer has moved in its network.
+  void FollowNetwork();
   /// Thread-safe.
   GroundSituation Situation(std::optional<std::string> problem) const;
   void OpenConsole();
@@ -107,8 +102,10 @@ class GroundService {
 
   const GroundOptions& options_;
   const ServiceMode mode_;
+  const TransportEnvironment& environment_;
   const Clock& clock_;
   StopSignal& signal_;
+  AddressWatch addresses_{""};
   ScanBoard board_;
   Health health_;
   SessionQueue to_reconstruction_;
@@ -153,9 +150,24 @@ SubscriberHandlers GroundService::Handlers() {
   return handlers;
 }
 
-Status GroundService::Open(const TransportEnvironment& environment) {
-  Result<std::unique_ptr<Participant>> participant =
-      Join(options_.live().domain(), mode_, environment, clock_, signal_.token());
+Result<std::unique_ptr<Participant>> GroundService::JoinNetwork(bool waits) {
+  const int domain = options_.live().domain();
+  const Announcement announcement{Role::kGround, "", HostName()};
+  addresses_ = AddressWatch(NetworkAddresses());
+  if (!waits) return Participant::Create(environment_, domain, announcement);
+  const auto waiting = [this](const Status& reason) {
+    addresses_ = AddressWatch(NetworkAddresses());
+    if (!subscriber_) return NotifyWaiting(reason.message());
+    // All threads are at work: they are to be well, too.
+    NotifyStatus(reason.message());
+    FeedWatchdog();
+  };
+  return JoinDomain(environment_, domain, clock_, signal_.token(), waiting, announcement);
+}
+
+Status GroundService::Open() {
+  // Somebody who waits for one scan wants to know at once that the network is not there.
+  Result<std::unique_ptr<Participant>> participant = JoinNetwork(/*waits=*/!mode_.single_scan);
   if (!participant) return participant.error();
   participant_ = std::move(*participant);
   Result<std::unique_ptr<Subscriber>> subscriber =
@@ -163,6 +175,31 @@ Status GroundService::Open(const TransportEnvironment& environment) {
   if (!subscriber) return subscriber.error();
   subscriber_ = std::move(*subscriber);
   return OkStatus();
+}
+
+void GroundService::FollowNetwork() {
+  const SubscriberStats link = subscriber_->stats();
+  const SteadyTime now = clock_.SteadyNow();
+  const Nanoseconds silent_for = link.edge_present ? Nanoseconds(0)
+                                 : link.edge_lost  ? now - *link.edge_lost
+                                                   : AddressWatch::kSilence;
+  if (!addresses_.HasMoved(NetworkAddresses(), silent_for, now)) return;
+  LOG(Ground, Warning) << "this computer's addresses have changed, and the rig is silent: joining "
+                          "the network anew";
+  const bool left = subscriber_->Leave([this] {
+    FeedWatchdog();
+    return !signal_.token().stop_requested();
+  });
+  if (!left) return;
+  participant_.reset();
+  Result<std::unique_ptr<Participant>> joined = JoinNetwork(/*waits=*/true);
+  if (joined) {
+    participant_ = std::move(*joined);
+    if (const Status status = subscriber_->Join(*participant_); status.ok()) return;
+  }
+  if (signal_.token().stop_requested()) return;
+  LOG(Ground, Error) << "the network cannot be joined; it is tried again";
+  addresses_ = AddressWatch("");
 }
 
 void GroundService::OpenConsole() {
@@ -210,7 +247,7 @@ int GroundService::Run() {
   RecordingLoop recording(options_, clock_, board_, health_.recording);
   ReconstructionLoop reconstruction(
       options_, clock_,
-      {*subscriber_, to_recording_, results, board_, health_.reconstruction,
+      {*subscriber_, to_recording_, results, board_, health_.reconstruction, health_.reading,
        console_ ? &console_->feed() : nullptr});
   {
     // Consumers are started before the producers, and stopped behind them below.
@@ -262,6 +299,7 @@ void GroundService::GuardUntilStopped() {
   const std::stop_token stop = signal_.token();
   for (Pause(stop, kTick); !stop.stop_requested(); Pause(stop, kTick)) {
     FeedWatchdog();
+    FollowNetwork();
     output_folder_.Tend(clock_.SteadyNow());
     status.Report(Situation(reported_problem_));
   }
@@ -284,11 +322,16 @@ void GroundService::FeedWatchdog() {
 }
 
 GroundSituation GroundService::Situation(std::optional<std::string> problem) const {
-  GroundSituation situation{.link = subscriber_->stats(),
+  const SubscriberStats link = subscriber_->stats();
+  const Nanoseconds lost_for =
+      link.edge_lost ? clock_.SteadyNow() - *link.edge_lost : Nanoseconds(0);
+  GroundSituation situation{.link = link,
+                            .rig_lost_for = lost_for,
                             .feedback = board_.feedback.Get(),
                             .edge = board_.edge.Get(),
                             .behind = board_.behind.Get().value_or(BehindCounts()),
                             .recording = {},
+                            .rebuilt_fraction = board_.rebuilt_fraction.Get(),
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
                             .scans_given_up = board_.scans_given_up,
@@ -343,8 +386,8 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
     if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
       return Fail(prepared);
   }
-  GroundService service(options, mode, clock, signal);
-  if (const Status opened = service.Open(environment); !opened.ok())
+  GroundService service(options, mode, environment, clock, signal);
+  if (const Status opened = service.Open(); !opened.ok())
     return signal.token().stop_requested() ? 0 : Fail(opened);
   return service.Run();
 }

@@ -13,6 +13,7 @@ std::optional<std::string> Health::Problem(SteadyTime now) const {
   for (const auto& [what, thread, limit] :
        {Assessed{"reception", receive, kFrameLimit},
         Assessed{"the reconstruction", reconstruction, kFrameLimit},
+        Assessed{"reading the earlier recording (is the disk stuck?)", reading, disk_limit_},
         Assessed{"the recording (is the disk stuck?)", recording, disk_limit_},
         Assessed{"writing results (is the disk stuck?)", results, disk_limit_}}) {
     const Nanoseconds at_it = thread.AtItFor(now);
@@ -40,7 +41,7 @@ std::optional<GroundThread> Health::StuckBeforeEnd(GroundThread awaited, SteadyT
       // Idle: it waits until there is room for its last scan.
       if (reconstruction.AtItFor(now) == Nanoseconds(0) && is_stuck(results, kLimit))
         return GroundThread::kResults;
-      stuck = is_stuck(reconstruction, kLimit);
+      stuck = is_stuck(reconstruction, kLimit) || is_stuck(reading, kLimit);
       break;
     case GroundThread::kResults:
       stuck = is_stuck(results, kLimit);

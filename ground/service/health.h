@@ -22,6 +22,7 @@ class Health {
 
   ThreadProgress receive;
   ThreadProgress reconstruction;
+  ThreadProgress reading;  ///< The same thread, while it reads an earlier recording.
   ThreadProgress recording;
   ThreadProgress results;
 

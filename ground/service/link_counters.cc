@@ -39,7 +39,8 @@ Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
     json["dropped_by_rig"][InUnderscores(drop.reason)] = drop.frames;
   }
   if (counters.captured_by_rig > 0) json["captured_by_rig"] = counters.captured_by_rig;
-  json["recorded"] = recorded;
+  json["recorded"] = recorded + counters.recorded_before;
+  if (counters.recorded_before > 0) json["recorded_before"] = counters.recorded_before;
   for (const NotRecorded reason : AllValues<NotRecorded>()) {
     if (left_out[reason] > 0) json["not_recorded_by_reason"][ToString(reason)] = left_out[reason];
   }
@@ -86,7 +87,8 @@ std::string RigText(const StreamCounters& counters) {
 
 std::string StreamText(const char* name, const StreamCounters& counters, std::uint64_t recorded) {
   std::string text = fmt::format("{:<8} {} published = {} received + {} missing; {} recorded", name,
-                                 counters.published, counters.received, counters.missing, recorded);
+                                 counters.published, counters.received, counters.missing,
+                                 recorded + counters.recorded_before);
   if (counters.late > 0) text += fmt::format("; {} came late", counters.late);
   if (counters.refused > 0) text += fmt::format("; {} samples refused", counters.refused);
   return text + "\n" + RigText(counters);
@@ -145,7 +147,7 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
   const bool waits = !recording.path.empty() && !recording.closed;
   const auto add_waiting = [&](const char* sensor, const StreamCounters& stream,
                                std::uint64_t recorded, const NotRecordedCounts& left_out) {
-    const std::uint64_t settled = recorded + Sum(left_out);
+    const std::uint64_t settled = recorded + stream.recorded_before + Sum(left_out);
     // So that received = recorded + not recorded holds in every result.
     if (waits && stream.received > settled)
       link[sensor]["not_recorded_by_reason"]["still_waiting"] = stream.received - settled;
@@ -154,6 +156,8 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
   add_waiting("thermal", counters.thermal, recording.thermal_frames, recording.thermal_left_out);
   link["recording_failed_frames"] =
       recording.left_out(NotRecorded::kDiskFailed) + recording.left_out(NotRecorded::kUnwritable);
+  for (const std::filesystem::path& file : recording.earlier_files)
+    link["recording_files"].push_back(file.filename().string());
   for (const std::filesystem::path& file : recording.files)
     link["recording_files"].push_back(file.filename().string());
   link["most_lacking_frames"] = counters.most_lacking;

@@ -1,9 +1,7 @@
 #include "ground/service/live_scan.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -14,15 +12,6 @@
 #include "ground/results/scan_result.h"
 
 namespace isotherm {
-
-std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
-                                    std::uint64_t session, CaptureTime start) {
-  const std::filesystem::path base(options.live().output_dir());
-  if (single_scan) return base;
-  const std::time_t seconds = ToNanoseconds(start) / 1'000'000'000;
-  return base / fmt::format("scan-{:%Y%m%dT%H%M%SZ}-{:08x}", fmt::gmtime(seconds),
-                            static_cast<std::uint32_t>(session));
-}
 
 Result<std::unique_ptr<LiveScan>> LiveScan::Create(const Clock& clock, const GroundOptions& options,
                                                    const RigDescription& rig, ConsoleFeed* feed) {
@@ -49,6 +38,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
 
 void LiveScan::Add(const ReceivedDepth& depth) {
   if (keeps_up_) KeepUp(depth.queued);
+  arrival_ages_.Add(Sensor::kDepth, depth.frame->header.capture_time, depth.arrival);
   arrivals_[depth.frame.get()] = depth.arrival;
   assembler_.Add(depth.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -60,6 +50,7 @@ void LiveScan::Add(const ReceivedThermal& thermal) {
   // now.
   pace_.set_nuc_running(state == NucState::kImminent || state == NucState::kInProgress ||
                         state == NucState::kSettling);
+  arrival_ages_.Add(Sensor::kThermal, thermal.frame->header.capture_time, thermal.arrival);
   arrivals_[thermal.frame.get()] = thermal.arrival;
   assembler_.Add(thermal.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -69,6 +60,22 @@ void LiveScan::Add(const ExternalOdometrySample& sample) {
   ++odometry_poses_received_;
   next_odometry_pose_ = std::max(next_odometry_pose_, sample.number + 1);
   pipeline_->ProcessExternalOdometry(sample.pose);
+}
+
+void LiveScan::AddRecorded(const DepthFramePtr& depth) {
+  assembler_.Add(depth);
+  ProcessRecorded();
+}
+
+void LiveScan::AddRecorded(const ThermalFramePtr& thermal) {
+  assembler_.Add(thermal);
+  ProcessRecorded();
+}
+
+void LiveScan::ProcessRecorded() {
+  is_recorded_ = true;
+  while (const auto frame = assembler_.Pop()) Process(*frame);
+  is_recorded_ = false;
 }
 
 void LiveScan::WhileIdle() {
@@ -162,7 +169,7 @@ void LiveScan::KeepUp(CaptureTime queued_at) {
 void LiveScan::Process(const Assembler::Frame& frame) {
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
     NoteQueueTime(thermal->get());
-    if (feed_ != nullptr) feed_->Show(*thermal);
+    if (feed_ != nullptr && !is_recorded_) feed_->Show(*thermal);
     pipeline_->ProcessThermal(*thermal);
     calibration_check_.Add(*thermal, model());
     return;
@@ -173,7 +180,8 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   const DepthReport report = pipeline_->ProcessDepth(depth);
   pace_.Add(depth.header, report);
   if (feed_ == nullptr) return;
-  feed_->Show(shared);
+  // The model is shown as it grows; images are of now.
+  if (!is_recorded_) feed_->Show(shared);
   feed_->AfterDepth(depth.header, report, model());
 }
 
@@ -182,6 +190,7 @@ std::optional<Feedback> LiveScan::TakeFeedback() {
   if (!moment) return std::nullopt;
   const SteadyTime start = clock_.SteadyNow();
   moment->ground_is_behind = is_behind_;
+  moment->link_is_narrow = link_is_narrow_;
   Feedback feedback = feedback_.Make(*moment, model());
   making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
   LogWhenDone();
@@ -230,6 +239,14 @@ Json LiveScan::DescribeLoadShedding() const {
     json["changes"].push_back(std::move(entry));
   }
   return json;
+}
+
+Json LiveScan::DescribeRebuild() const {
+  if (!rebuild_) return nullptr;
+  return {{"frames", rebuild_->frames},
+          {"left_out_meanwhile", rebuild_->left_out},
+          {"elapsed_s", rebuild_->elapsed_s},
+          {"finished", rebuild_->is_finished}};
 }
 
 Json LiveScan::DescribeFeedback() const {

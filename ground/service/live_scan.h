@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -24,14 +23,19 @@
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/pipeline/load_shedding_history.h"
+#include "ground/service/arrival_ages.h"
 #include "ground/service/scan_board.h"
 #include "ground/subscriber/received_frame.h"
 
 namespace isotherm {
 
-/// Returns where the results of a session go.
-std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
-                                    std::uint64_t session, CaptureTime start);
+/// Says what became of frames that an earlier process had recorded of the scan.
+struct RebuildReport {
+  std::uint64_t frames = 0;    ///< Came into the model.
+  std::uint64_t left_out = 0;  ///< Came over the link meanwhile, and are recorded only.
+  double elapsed_s = 0.0;
+  bool is_finished = false;  ///< All of them have come into the model.
+};
 
 /// One session of the live driver: the same stages as the inline one, fed by the link. Owns no
 /// thread. Thread-compatible: the reconstruction thread's, then the results' from FinishFrames on.
@@ -50,6 +54,20 @@ class LiveScan {
   void Add(const ReceivedThermal& thermal);
   /// Poses are not held back. Frames wait for each other, so that a pose is there before its frame.
   void Add(const ExternalOdometrySample& sample);
+  /// Takes what an earlier process has recorded of this scan; before all others, and nobody waits
+  /// for it.
+  void AddRecorded(const DepthFramePtr& depth);
+  void AddRecorded(const ThermalFramePtr& thermal);
+  void AddRecorded(const ExternalOdometry& pose) { pipeline_->ProcessExternalOdometry(pose); }
+  /// Takes the newest that is known of the rig's clock.
+  void SetClock(const SessionClock& clock) { arrival_ages_.SetClock(clock); }
+  /// Says whether the rig leaves frames for later, because the link does not carry all.
+  void SetLinkNarrow(bool is_narrow) { link_is_narrow_ = is_narrow; }
+  void SetRebuild(const RebuildReport& report) { rebuild_ = report; }
+  /// Poses up to here are no longer waited for.
+  void SkipPosesTo(std::uint64_t next) { next_odometry_pose_ = skipped_odometry_poses_ = next; }
+  /// To be called between what was recorded and what comes: nothing of before is told the rig.
+  void EndRecorded() { static_cast<void>(pace_.Take()); }
   /// Processes what the assembler still holds back.
   void FinishFrames(const std::function<void(double fraction)>& progress = {});
   /// Says whether the thermal camera is still as it was calibrated, once the frames are
@@ -73,6 +91,9 @@ class LiveScan {
   /// Returns when work was left out to keep up, as it goes into stats.json; null if it never could
   /// be.
   Json DescribeLoadShedding() const;
+  /// Returns what came from an earlier process's recording, as it goes into stats.json; null if
+  /// nothing did.
+  Json DescribeRebuild() const;
   /// To be called while no frame waits: lets the console go on.
   void WhileIdle();
   /// Returns whether WhileIdle has something to do.
@@ -81,6 +102,8 @@ class LiveScan {
   /// Returns how long frames waited from their arrival to their turn: in queues, and for the other
   /// stream.
   const StageStats& waiting() const { return waiting_; }
+  /// Tells how long they took from capture to arrival.
+  const ArrivalAges& arrival_ages() const { return arrival_ages_; }
 
   std::uint64_t session() const { return session_; }
   /// Returns the console's number of this scan; 0 without one.
@@ -93,7 +116,8 @@ class LiveScan {
   std::uint64_t odometry_poses_received() const { return odometry_poses_received_; }
   /// Numbers below the highest received that did not come.
   std::uint64_t odometry_poses_missing() const {
-    return next_odometry_pose_ - std::min(next_odometry_pose_, odometry_poses_received_);
+    const std::uint64_t waited_for = next_odometry_pose_ - skipped_odometry_poses_;
+    return waited_for - std::min(waited_for, odometry_poses_received_);
   }
   /// Returns what all frames so far have given.
   ScanModel model() const { return pipeline_->model(); }
@@ -103,6 +127,8 @@ class LiveScan {
   LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
            std::unique_ptr<GroundPipeline> pipeline, ConsoleFeed* feed);
   void Process(const Assembler::Frame& frame);
+  /// Hands on what the assembler has put in order of recorded frames.
+  void ProcessRecorded();
   void NoteQueueTime(const void* frame);
   /// Leaves work out while frames wait too long in the queue (live.expert.max_wait_s).
   void KeepUp(CaptureTime queued_at);
@@ -120,16 +146,21 @@ class LiveScan {
   FeedbackMaker feedback_;
   FeedbackPace pace_;
   bool is_behind_ = false;
+  bool link_is_narrow_ = false;
+  bool is_recorded_ = false;  ///< A frame that is processed is not of now.
   bool reported_done_ = false;
   std::uint64_t odometry_poses_received_ = 0;
   std::uint64_t next_odometry_pose_ = 0;
+  std::uint64_t skipped_odometry_poses_ = 0;     ///< Lower ones were recorded before.
   std::map<const void*, CaptureTime> arrivals_;  ///< When the frames in the assembler arrived.
   StageStats waiting_;
+  ArrivalAges arrival_ages_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool reported_behind_ = false;
   const CaptureTime begun_ = clock_.Now();  ///< Frames that came before waited for the scan itself.
   const SteadyTime steady_begun_ = clock_.SteadyNow();
   LoadSheddingHistory load_shedding_;
+  std::optional<RebuildReport> rebuild_;
   std::uint64_t shown_scan_ = 0;
   std::optional<ConsoleCost> console_cost_;  ///< After LeaveConsole.
   const ProcessorTimes processor_before_ = ReadProcessorTimes();

@@ -4,6 +4,7 @@
 
 #include "common/base/log.h"
 #include "common/doubts/doubts.h"
+#include "common/messages/backlog.h"
 #include "ground/service/status_reporter.h"
 
 namespace isotherm {
@@ -37,6 +38,16 @@ void ReconstructionLoop::Run(SessionQueue& queue, const std::stop_token& stop) {
 std::optional<SessionItem> ReconstructionLoop::Next(SessionQueue& queue,
                                                     const std::stop_token& stop) {
   constexpr Nanoseconds kIdle = std::chrono::milliseconds(100);
+  constexpr int kMaxItemsBetweenSteps = 16;
+  while (rebuild_ && !stop.stop_requested()) {
+    std::optional<SessionItem> item = queue.PopFor(Nanoseconds(0), stop);
+    // What has come goes first: it takes no time. But it must not take all of that.
+    if (!item || ++items_since_step_ >= kMaxItemsBetweenSteps) {
+      items_since_step_ = 0;
+      StepRebuild();
+    }
+    if (item) return item;
+  }
   if (console_ == nullptr) return queue.Pop(stop);
   for (;;) {
     // Somebody may begin to look at a scan that rests.
@@ -50,6 +61,11 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   End();
   start_ = start;
   started_ = true;
+  if (start.is_complete) {
+    LOG(Ground, Info) << "the scan that the rig still has is complete already, folder="
+                      << start.folder.string();
+    return BeginRebuild();
+  }
   LogCameras(start.rig);
   if (console_ != nullptr)
     console_->BeginScan(start.rig, start.folder.filename().string(), start.folder.string());
@@ -64,6 +80,7 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   LOG(Ground, Info) << "scan started, session=" << start.rig.session
                     << " results=" << start.folder.string();
   for (const std::string& doubt : DoubtsAbout(start.rig.rig)) LOG(Ground, Warning) << doubt;
+  BeginRebuild();
   if (const Status& thermal = scan_->model().thermal_status; !thermal.ok()) {
     LOG(Ground, Warning) << thermal.message();
   }
@@ -79,13 +96,53 @@ void ReconstructionLoop::Handle(const SessionCounters& counters) {
   End();
 }
 
+void ReconstructionLoop::Handle(const SessionClock& clock) {
+  if (!scan_ || clock.session != start_.rig.session) return;
+  // A replay as fast as the ground takes it has the times of another day.
+  if (!start_.rig.waits_for_ground) scan_->SetClock(clock);
+  // It comes with the rig's status.
+  const std::optional<EdgeStatus> edge = board_.edge.Get();
+  scan_->SetLinkNarrow(edge && LeftForLater(*edge) > 0);
+}
+
+void ReconstructionLoop::BeginRebuild() {
+  if (start_.earlier_files.empty()) return;
+  progress_.Idle();
+  reading_.Busy(clock_.SteadyNow());
+  rebuild_.emplace(start_, clock_, subscriber_, scan_.get());
+  if (!rebuild_->Begin()) rebuild_.reset();
+  // An edge that waits for the ground waits for this, too.
+  while (rebuild_ && start_.rig.waits_for_ground && !stop_.stop_requested()) StepRebuild();
+  reading_.Idle();
+  progress_.Busy(clock_.SteadyNow());
+}
+
+void ReconstructionLoop::StepRebuild() {
+  // Not progress_: a disk may take longer than a frame.
+  reading_.Busy(clock_.SteadyNow());
+  const bool goes_on = rebuild_->Step();
+  board_.rebuilt_fraction.Set(rebuild_->progress().fraction());
+  if (!goes_on) {
+    rebuild_.reset();
+    board_.rebuilt_fraction.Take();
+  }
+  reading_.Idle();
+}
+
 void ReconstructionLoop::Handle(const ExternalOdometrySample& sample) {
-  if (scan_) scan_->Add(sample);
+  if (!scan_) return;
+  if (rebuild_) return rebuild_->CountLeftOut(sample);
+  scan_->Add(sample);
 }
 
 template <typename Frame>
 void ReconstructionLoop::HandleFrame(const Frame& frame) {
   if (!scan_) return;
+  if (rebuild_) {
+    // Its place is behind what is recorded; the results that are made in the end have it.
+    rebuild_->CountLeftOut();
+    return;
+  }
   scan_->Add(frame);
   const std::optional<Feedback> feedback = scan_->TakeFeedback();
   if (!feedback) return;
@@ -125,6 +182,8 @@ void ReconstructionLoop::End() {
   if (!std::exchange(started_, false)) return;
   board_.feedback.Take();
   board_.behind.Take();
+  board_.rebuilt_fraction.Take();
+  rebuild_.reset();
   ended_result_bytes_ += std::exchange(result_bytes_, 0);
   if (scan_) scan_->LeaveConsole();
   progress_.Idle();  // Enqueue may wait for the results of other scans.

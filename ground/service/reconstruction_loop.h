@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stop_token>
 
 #include "common/time/clock.h"
@@ -10,6 +11,7 @@
 #include "ground/service/recording_queue.h"
 #include "ground/service/result_writer.h"
 #include "ground/service/scan_board.h"
+#include "ground/service/scan_rebuild.h"
 #include "ground/service/session_item.h"
 #include "ground/subscriber/subscriber.h"
 
@@ -22,6 +24,7 @@ struct ReconstructionSinks {
   ResultWriter& results;      ///< Scans that have ended.
   ScanBoard& board;
   ThreadProgress& progress;
+  ThreadProgress& reading;         ///< The same while the thread reads from the disk.
   ConsoleFeed* console = nullptr;  ///< Shows the scan, if there is a console.
 };
 
@@ -38,6 +41,7 @@ class ReconstructionLoop {
         results_(sinks.results),
         board_(sinks.board),
         progress_(sinks.progress),
+        reading_(sinks.reading),
         console_(sinks.console) {}
 
   /// Until stop is requested; frames that wait then are counted and left out.
@@ -52,10 +56,15 @@ class ReconstructionLoop {
   void Handle(const ExternalOdometrySample& sample);
   void Handle(const ReceivedDepth& frame);
   void Handle(const ReceivedThermal& frame);
-  void Handle(const Feedback& /*feedback*/) {}   // Comes from here.
-  void Handle(const SessionClock& /*clock*/) {}  // For the recording.
-  void Handle(const SessionMark& /*mark*/) {}    // For the recording.
-  /// Returns the next item; while there is none, does what is left for the console.
+  void Handle(const Feedback& /*feedback*/) {}  // Comes from here.
+  void Handle(const SessionClock& clock);
+  void Handle(const SessionMark& /*mark*/) {}  // For the recording.
+  /// Begins with what an earlier process has recorded of this scan, if it has.
+  void BeginRebuild();
+  /// Goes on with it.
+  void StepRebuild();
+  /// Returns the next item; while there is none, does what is left for the rebuild, then for the
+  /// console.
   std::optional<SessionItem> Next(SessionQueue& queue, const std::stop_token& stop);
   template <typename Frame>
   void HandleFrame(const Frame& frame);
@@ -71,12 +80,15 @@ class ReconstructionLoop {
   ResultWriter& results_;
   ScanBoard& board_;
   ThreadProgress& progress_;
+  ThreadProgress& reading_;
   ConsoleFeed* const console_;
   std::stop_token stop_;
   bool started_ = false;  ///< A session runs; without a scan if none could be begun.
   SessionStart start_;    ///< How the session that runs began.
   std::unique_ptr<LiveScan> scan_;
-  std::uint64_t unprocessed_ = 0;  ///< Frames of this session.
+  std::optional<ScanRebuild> rebuild_;  ///< Nothing once all is in scan_.
+  int items_since_step_ = 0;            ///< Handled since the rebuild has gone on.
+  std::uint64_t unprocessed_ = 0;       ///< Frames of this session.
   std::uint64_t result_bytes_ = 0;
   std::uint64_t ended_result_bytes_ = 0;  ///< Results of scans that are still being written.
   Status status_;

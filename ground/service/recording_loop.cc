@@ -82,7 +82,9 @@ void RecordingLoop::Handle(const SessionStart& start) {
   if (const Status prepared = PrepareOutputDir(start.folder); !prepared.ok()) {
     LOG(Ground, Error) << "this scan's folder cannot be used: " << prepared.message();
   }
-  if (!options_.live().record()) return;
+  // A folder that another process has taken meanwhile has its files all the same: parts beside.
+  if (start.lock) static_cast<void>(start.lock->Take(start.folder));
+  if (!options_.live().record() || start.is_complete) return;
   const std::filesystem::path path = start.folder / "scan.mcap";
   start_.recording->Update([&](auto& progress) { progress.path = path; });
   opened_ = clock_.SteadyNow();

@@ -26,6 +26,13 @@ std::uint64_t Sum(const NotRecordedCounts& counts) {
   return sum;
 }
 
+std::vector<std::filesystem::path> RecordingProgress::AllFiles() const {
+  std::vector<std::filesystem::path> all = earlier_files;
+  all.insert(all.end(), files.begin(), files.end());
+  all.insert(all.end(), late_files.begin(), late_files.end());
+  return all;
+}
+
 std::uint64_t RecordingProgress::left_out() const {
   return Sum(depth_left_out) + Sum(thermal_left_out);
 }

@@ -37,6 +37,10 @@ struct RecordingProgress {
   /// What came too late for the reconstruction has files of its own, so that each is in the order
   /// of time.
   std::vector<std::filesystem::path> late_files{};
+  /// Recordings of an earlier process of the scan, or what is taken for them until they are looked
+  /// through; none of the counts below has these frames.
+  std::vector<std::filesystem::path> earlier_files{};
+  bool is_earlier_in_model = false;  ///< The live model was made of these first.
   std::uint64_t late_frames = 0;  ///< Counts both streams, in these; the next two have them, too.
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
@@ -52,6 +56,10 @@ struct RecordingProgress {
   std::uint64_t reserve_bytes = 0;  ///< The recording stops when no more than this is free.
   double bytes_per_s = 0.0;
 
+  /// Returns all files with frames of the scan, the earlier ones first, what came late last.
+  std::vector<std::filesystem::path> AllFiles() const;
+  /// Returns whether frames of the scan are elsewhere than in the files that are in order.
+  bool is_in_parts() const { return late_frames > 0 || !earlier_files.empty(); }
   std::uint64_t left_out() const;
   std::uint64_t left_out(NotRecorded reason) const;
   /// Returns for how long the disk lasts, seconds; NaN = not known yet.

@@ -38,6 +38,10 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
   link["waiting"] = DescribeStage(scan.waiting());
   if (Json load_shedding = scan.DescribeLoadShedding(); !load_shedding.is_null())
     link["load_shedding"] = std::move(load_shedding);
+  if (Json rebuild = scan.DescribeRebuild(); !rebuild.is_null())
+    link["rebuild"] = std::move(rebuild);
+  if (Json ages = scan.arrival_ages().Describe(); !ages.is_null())
+    link["capture_to_ground"] = std::move(ages);
   link["out_of_order_frames"] = scan.out_of_order();
   if (scan.odometry_poses_received() > 0) {
     link["external_odometry"]["received"] = scan.odometry_poses_received();
@@ -51,7 +55,13 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
   return stats;
 }
 
-std::string WhereLateFramesAre(const RecordingProgress& recording) {
+std::string WhereFramesAre(const RecordingProgress& recording) {
+  if (!recording.earlier_files.empty()) {
+    std::string files;
+    for (const fs::path& file : recording.AllFiles())
+      files += (files.empty() ? "" : " ") + file.string();
+    return "its frames are in " + files + " (isotherm merge-recordings, then isotherm reconstruct)";
+  }
   return fmt::format(
       "what came late is in {} (isotherm merge-recordings, then isotherm reconstruct)",
       (recording.late_files.empty() ? recording.path : recording.late_files.front()).string());
@@ -92,15 +102,17 @@ bool ResultWriter::WaitForRoom(MutexLock& lock, Nanoseconds patience, const std:
 
 void ResultWriter::GiveUp(const EndedScan& ended) {
   if (!ended.scan) return;  // It had none.
-  const fs::path recording = ended.start.recording->Get().path;
+  const RecordingProgress recording = ended.start.recording->Get();
+  const std::string where =
+      recording.is_in_parts() ? WhereFramesAre(recording)
+      : recording.path.empty()
+          ? "its frames were not recorded"
+          : fmt::format("its frames are in the recording: isotherm reconstruct {} -o {}",
+                        recording.path.string(), ended.start.folder.string());
   given_up_ = ResourceExhausted(fmt::format(
       "the results of a scan are lost, session={}: those of two scans before it are still being "
       "written, the disk is slow or stuck, output_dir={}; {}",
-      ended.start.rig.session, options_.live().output_dir(),
-      recording.empty() ? "its frames were not recorded"
-                        : fmt::format("its frames are in the recording: isotherm reconstruct {} -o "
-                                      "{}",
-                                      recording.string(), ended.start.folder.string())));
+      ended.start.rig.session, options_.live().output_dir(), where));
   ++board_.scans_given_up;
   LOG(Ground, Error) << given_up_.message();
 }
@@ -122,8 +134,8 @@ void ResultWriter::Run(const std::stop_token& stop) {
     if (!stats.is_null()) {
       Complete(ended->start, stats, stop);
     } else if (const RecordingProgress recording = ended->start.recording->Get();
-               recording.late_frames > 0) {
-      LOG(Ground, Warning) << WhereLateFramesAre(recording);
+               recording.is_in_parts() && !ended->start.is_complete) {
+      LOG(Ground, Warning) << WhereFramesAre(recording);
     }
     progress_.Idle();
     // The reserve on the disk was for these results; a scan under way says again what it needs.
@@ -147,13 +159,21 @@ Json ResultWriter::FinishScan(EndedScan& ended, const std::stop_token& stop) {
   const RecordingProgress recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
   const SessionCounters counters = counters_(scan.session());
   const Json stats = DescribeEnd(scan, options_, counters, recording, ended.unprocessed);
+  // Results of an earlier process know more than a model of which only the beginning is there.
+  const bool is_partial = !recording.earlier_files.empty() && !recording.is_earlier_in_model;
+  std::error_code missing;
+  if (is_partial && fs::exists(ended.start.folder / "stats.json", missing)) {
+    WriteStandardOutput("results  as they were before, until the scan is completed\n" +
+                        CountersText(counters, recording));
+    return stats;
+  }
   const Result<std::string> text = WriteWithFallback(scan, calibration, stats, ended.start.folder);
   if (!text) {
     status_ = text.error();
     LOG(Ground, Error) << status_.message();
     return nullptr;
   }
-  WriteStandardOutput(*text + CountersText(counters, recording) +
+  WriteStandardOutput(*text + CountersText(counters, recording) + scan.arrival_ages().ToText() +
                       ConclusionText(scan.behind(), scan.areas(),
                                      options_.feedback().done_fraction(), recording.path));
   return stats;
@@ -161,11 +181,19 @@ Json ResultWriter::FinishScan(EndedScan& ended, const std::stop_token& stop) {
 
 void ResultWriter::Complete(const SessionStart& start, const Json& stats,
                             const std::stop_token& stop) {
-  if (start.recording->Get().late_frames == 0) return;
+  if (!start.recording->Get().is_in_parts()) return;
   // Two files are being closed; whoever waits for results has some by now.
   const RecordingProgress recording = start.recording->WaitUntilClosed(kLateClosingPatience);
-  if (!NeedsCompletion(options_, recording)) return;
-  LOG(Ground, Info) << "frames came late, frames=" << recording.late_frames
+  if (!NeedsCompletion(options_, recording)) {
+    if (recording.AllFiles().size() > 1) {
+      LOG(Ground, Warning) << "the scan is in parts: " << WhereFramesAre(recording);
+    }
+    return;
+  }
+  LOG(Ground, Info) << (recording.late_frames > 0 ? "frames came late, frames="
+                                                  : "frames were recorded before, files=")
+                    << (recording.late_frames > 0 ? recording.late_frames
+                                                  : recording.earlier_files.size())
                     << ": the recording and the results are completed";
   std::stop_source give_up;
   const std::stop_callback on_stop(stop, [&give_up] { give_up.request_stop(); });
@@ -178,17 +206,20 @@ void ResultWriter::Complete(const SessionStart& start, const Json& stats,
     for (const char* part : {"link", "feedback", "console"}) {
       if (stats.contains(part)) json[part] = stats[part];
     }
-    json["link"]["recording_files"] = {recording.path.filename().string()};
+    json["link"]["recording_files"] = {recording.AllFiles().front().filename().string()};
   };
-  const Result<std::string> completed = CompleteScan({.options = options_,
-                                                      .folder = start.folder,
-                                                      .recording = recording,
-                                                      .describe = describe,
-                                                      .go_on = go_on,
-                                                      .stop = give_up.get_token()});
+  const Result<std::string> completed =
+      CompleteScan({.options = options_,
+                    .folder = start.folder,
+                    .recording = recording,
+                    .depth_frames = stats["link"]["depth"]["recorded"],
+                    .thermal_frames = stats["link"]["thermal"]["recorded"],
+                    .describe = describe,
+                    .go_on = go_on,
+                    .stop = give_up.get_token()});
   if (completed) return WriteStandardOutput(*completed);
   LOG(Ground, Warning) << "the scan is not completed: " << completed.error().message() << "; "
-                       << WhereLateFramesAre(recording);
+                       << WhereFramesAre(recording);
 }
 
 Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan,

@@ -25,6 +25,8 @@ struct ScanBoard {
   LatestValue<EdgeStatus> edge;
   LatestValue<BehindCounts> behind;
   LatestValue<std::shared_ptr<RecordingTracker>> recording;
+  /// The part of an earlier process's recording that is in the model, 0..1, while that grows.
+  LatestValue<double> rebuilt_fraction;
   /// Says what of the calibration has moved, by the last scan that was checked; empty = nothing.
   LatestValue<std::string> calibration;
   /// The results of the model so far would take this much.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,12 +29,6 @@ constexpr double kNegligible = 0.01;
 constexpr std::uintmax_t kReserveBytes = 1U << 30;
 /// Whatever is live goes first.
 constexpr int kNiceness = 10;
-
-std::vector<fs::path> FilesOf(const RecordingProgress& recording) {
-  std::vector<fs::path> files = recording.files;
-  files.insert(files.end(), recording.late_files.begin(), recording.late_files.end());
-  return files;
-}
 
 /// Both copies are on the disk for a moment.
 Status CheckSpace(const std::vector<fs::path>& files) {
@@ -67,11 +62,11 @@ Status MergeFiles(const CompletionRequest& request, const std::vector<fs::path>&
   merge.sync = true;
   const Result<ConvertSummary> merged = ConvertRecording(merge);
   if (!merged) return merged.error();
-  if (merged->depth_frames < request.recording.depth_frames ||
-      merged->thermal_frames < request.recording.thermal_frames) {
+  const std::uint64_t depth = std::max(request.depth_frames, request.recording.depth_frames);
+  const std::uint64_t thermal = std::max(request.thermal_frames, request.recording.thermal_frames);
+  if (merged->depth_frames < depth || merged->thermal_frames < thermal) {
     return DataLoss(fmt::format("{}: only {} of {} frames can be read back", files.front().string(),
-                                merged->depth_frames + merged->thermal_frames,
-                                request.recording.depth_frames + request.recording.thermal_frames));
+                                merged->depth_frames + merged->thermal_frames, depth + thermal));
   }
   ISOTHERM_RETURN_IF_ERROR(whole->Commit());
   // On the disk, under its name: the parts are superfluous from here on.
@@ -95,12 +90,15 @@ Result<ReconstructSummary> MakeResultsAnew(const CompletionRequest& request,
 }
 
 Result<std::string> Complete(const CompletionRequest& request) {
-  const std::vector<fs::path> files = FilesOf(request.recording);
-  if (Status merged = MergeFiles(request, files); !merged.ok()) return Err(std::move(merged));
+  const std::vector<fs::path> files = request.recording.AllFiles();
+  if (files.size() > 1) {
+    if (Status merged = MergeFiles(request, files); !merged.ok()) return Err(std::move(merged));
+  }
   const std::uint64_t late = request.recording.late_frames;
   const auto frames =
       static_cast<double>(request.recording.depth_frames + request.recording.thermal_frames);
-  if (static_cast<double>(late) <= kNegligible * frames) {
+  if (request.recording.earlier_files.empty() &&
+      static_cast<double>(late) <= kNegligible * frames) {
     return fmt::format("complete {} frames came late; {} has them, the results do without\n", late,
                        files.front().string());
   }
@@ -110,15 +108,21 @@ Result<std::string> Complete(const CompletionRequest& request) {
         fmt::format("{} is complete, the results are not made anew (isotherm reconstruct does it)",
                     files.front().string())));
   }
-  return made->text + fmt::format("complete {} frames came late: {} and these results have them\n",
-                                  late, files.front().string());
+  const char* parts = request.recording.earlier_files.empty()
+                          ? ""
+                          : ", and others were recorded before this program was started";
+  return made->text +
+         fmt::format("complete {} frames came late{}: {} and these results have them\n", late,
+                     parts, files.front().string());
 }
 
 }  // namespace
 
 bool NeedsCompletion(const GroundOptions& options, const RecordingProgress& recording) {
-  return options.live().expert().complete() && recording.closed && recording.late_frames > 0 &&
-         !recording.files.empty();
+  if (!options.live().expert().complete() || !recording.closed || !recording.is_in_parts())
+    return false;
+  const std::size_t files = recording.AllFiles().size();
+  return files > 1 || (files == 1 && !recording.is_earlier_in_model && recording.late_frames == 0);
 }
 
 Result<std::string> CompleteScan(const CompletionRequest& request) {

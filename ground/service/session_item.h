@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include "common/concurrency/bounded_queue.h"
 #include "common/messages/messages.h"
+#include "ground/service/folder_lock.h"
 #include "ground/service/recording_tracker.h"
 #include "ground/subscriber/received_frame.h"
 #include "ground/subscriber/session_counters.h"
@@ -16,6 +18,10 @@ namespace isotherm {
 struct SessionStart {
   RigDescription rig;
   std::filesystem::path folder;
+  // As ScanFolder says.
+  std::vector<std::filesystem::path> earlier_files;
+  std::shared_ptr<FolderLock> lock;
+  bool is_complete = false;
   std::shared_ptr<RecordingTracker> recording;
 };
 

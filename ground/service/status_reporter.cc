@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -73,16 +74,28 @@ std::vector<std::string> TroublesOf(const GroundSituation& situation) {
   return parts;
 }
 
+/// "RIG LOST for 12 s, it records: nothing is lost".
+std::string LostText(const GroundSituation& situation) {
+  const bool records = situation.edge && std::isfinite(situation.edge->spool_fill_ratio);
+  return fmt::format("RIG LOST for {:.0f} s, {}", ToSeconds(situation.rig_lost_for),
+                     records ? "it records: nothing is lost" : "and it does not record");
+}
+
+/// Says how the link to a rig that is there is.
+std::string LinkText(const GroundSituation& situation) {
+  if (!situation.edge || !HasBacklog(*situation.edge)) return "link good";
+  return "to come from the rig's recording: " + BacklogText(*situation.edge);
+}
+
 /// Adds what has arrived of the scan, and where it stays.
 void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) {
   const SessionCounters& counters = situation.link.counters;
+  if (situation.link.edge_present && !counters.closed) parts.push_back(LinkText(situation));
   parts.push_back(fmt::format("received {}, {}", ArrivedText("depth", counters.depth),
                               ArrivedText("thermal", counters.thermal)));
   if (situation.edge) {
     const std::uint64_t dropped = Dropped(situation.edge->depth) + Dropped(situation.edge->thermal);
     if (dropped > 0) parts.push_back(fmt::format("dropped by the rig {}", dropped));
-    if (HasBacklog(*situation.edge))
-      parts.push_back("to come from the rig's recording: " + BacklogText(*situation.edge));
     if (const double age_s = situation.edge->feedback.p50_s; age_s > kOldFeedback_s)
       parts.push_back(fmt::format("advice is {:.1f} s old when it reaches the rig", age_s));
   }
@@ -99,6 +112,10 @@ void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) 
 
 }  // namespace
 
+std::string RebuildText(double fraction) {
+  return fmt::format("making the model anew of its recording, {:.0f} %", 100.0 * fraction);
+}
+
 void LogCameras(const RigDescription& rig) {
   LogCamera("depth", rig.depth);
   LogCamera("thermal", rig.thermal);
@@ -110,9 +127,11 @@ std::vector<std::string> StatusParts(const GroundSituation& situation) {
   if (situation.problem) parts.push_back("STUCK: " + *situation.problem);
   if (!link.rig_problem.empty()) parts.push_back(link.rig_problem);
   const bool has_scan = link.counters.session != 0 && !link.counters.closed;
-  if (!link.edge_present && has_scan) parts.emplace_back("RIG LOST");
+  if (!link.edge_present && has_scan) parts.push_back(LostText(situation));
   std::vector<std::string> said = TroublesOf(situation);
-  if (situation.feedback) {
+  if (situation.rebuilt_fraction) {
+    parts.push_back(RebuildText(*situation.rebuilt_fraction));
+  } else if (situation.feedback) {
     said = FeedbackParts(*situation.feedback, std::move(said));
   } else if (has_scan) {
     parts.emplace_back("scanning");

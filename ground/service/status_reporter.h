@@ -15,17 +15,22 @@ namespace isotherm {
 /// Holds what the operator's line is made of.
 struct GroundSituation {
   SubscriberStats link;
+  Nanoseconds rig_lost_for{0};       ///< If it is not there.
   std::optional<Feedback> feedback;  ///< The newest of this scan.
   std::optional<EdgeStatus> edge;
   BehindCounts behind;
   RecordingProgress recording;
-  Nanoseconds recording_at_it{0};  ///< How long the disk has been at one piece of work.
+  std::optional<double> rebuilt_fraction;  ///< The part of the recording in the model.
+  Nanoseconds recording_at_it{0};          ///< How long the disk has been at one piece of work.
   int scans_being_written = 0;
   int scans_given_up = 0;                       ///< Their results are lost.
   std::optional<std::string> problem;           ///< The part that is stuck.
   std::string moved_calibration;                ///< By the last scan; empty = nothing.
   std::optional<std::string> folder_problem{};  ///< The reason for which nothing can be written.
 };
+
+/// "making the model anew of its recording, 40 %".
+std::string RebuildText(double fraction);
 
 /// A part per fact, the most important first: what to do, what is wrong, how the scan is, what has
 /// arrived, how long the disk lasts, how the rig's clock is.

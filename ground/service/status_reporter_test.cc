@@ -44,8 +44,9 @@ TEST(StatusReporterTest, BeforeAScanItSaysWhatIsWaitedFor) {
 TEST(StatusReporterTest, AdviceComesFirstThenTrackingCoverageAndFrames) {
   EXPECT_THAT(
       StatusText(Scanning()),
-      StartsWith("closer (40 % of the surface is farther than 0.60 m) | tracked | view 55 % "
-                 "good | all 22 % of 0.84 m2 | received 9 of 10 depth, 0 of 0 thermal"));
+      StartsWith(
+          "closer (40 % of the surface is farther than 0.60 m) | tracked | view 55 % "
+          "good | all 22 % of 0.84 m2 | link good | received 9 of 10 depth, 0 of 0 thermal"));
   EXPECT_EQ(Narrow(Scanning()),
             "closer (40 % of the surface is farther than 0.60 m) | tracked | view 55 % good");
 }
@@ -172,8 +173,24 @@ TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {
   situation.edge->depth.dropped = {{"queue full", 5}, {"rejected", 2}};
   situation.edge->thermal.dropped = {{"queue full", 3}};
   EXPECT_THAT(StatusText(situation), HasSubstr(" | dropped by the rig 10"));
+}
+
+TEST(StatusReporterTest, F25ALostRigIsSaidWithHowLongAndWhetherItRecords) {
+  GroundSituation situation = Scanning();
   situation.link.edge_present = false;
-  EXPECT_THAT(StatusText(situation), StartsWith("RIG LOST | closer"));
+  situation.rig_lost_for = std::chrono::seconds(12);
+  EXPECT_THAT(StatusText(situation), StartsWith("RIG LOST for 12 s, and it does not record | clo"));
+  situation.edge.emplace().spool_fill_ratio = 0.1;
+  EXPECT_THAT(StatusText(situation),
+              StartsWith("RIG LOST for 12 s, it records: nothing is lost | closer"));
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("link good")));
+}
+
+TEST(StatusReporterTest, F32AModelThatIsMadeAnewSaysHowFarItIs) {
+  GroundSituation situation = Scanning();
+  situation.rebuilt_fraction = 0.4;
+  EXPECT_THAT(StatusText(situation),
+              StartsWith("making the model anew of its recording, 40 % | link good | received 9"));
 }
 
 }  // namespace

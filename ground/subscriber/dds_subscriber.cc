@@ -11,6 +11,7 @@
 
 #include "common/base/host_name.h"
 #include "common/base/log.h"
+#include "common/base/pause.h"
 
 namespace isotherm {
 namespace {
@@ -70,34 +71,44 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
       // Not from 1, so that the result for an earlier run of this ground is not taken for ours.
       next_command_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))) {}
 
-Status DdsSubscriber::Open(const Participant& participant) {
-  ISOTHERM_RETURN_IF_ERROR(ends_.Open(participant, refusals_));
-  self_ = participant.peer();
-  return ends_.hello.Write(options_.ground_id, own_hello_);
-}
-
 void DdsSubscriber::Run(std::stop_token stop) {
-  const std::stop_callback wake(stop, [this] { ends_.wait_set.Wake(); });
+  const std::stop_callback wake(stop, [this] {
+    if (const auto ends = joined_ends()) ends->wait_set.Wake();
+  });
   while (!stop.stop_requested()) {
-    ends_.wait_set.Wait(TimeToNextDuty(clock_.SteadyNow()));
-    while (TakeRound() && !stop.stop_requested()) Housekeep();
+    if (!FollowNetwork()) {
+      Pause(stop, kIdleInterval);
+    } else {
+      ends_->wait_set.Wait(TimeToNextDuty(clock_.SteadyNow()));
+      while (TakeRound() && !stop.stop_requested()) Housekeep();
+    }
     Housekeep();
   }
-  TakeRound();
+  if (ends_) TakeRound();
   depth_.DeliverAll();
   thermal_.DeliverAll();
   Housekeep();
   SendReceipt(clock_.SteadyNow());
 }
 
+bool DdsSubscriber::FollowNetwork() {
+  std::shared_ptr<GroundEndpoints> joined = joined_ends();
+  if (joined != ends_) {
+    // It asks the readers that go.
+    peers_ = {};
+    ends_ = std::move(joined);
+  }
+  return ends_ != nullptr;
+}
+
 bool DdsSubscriber::TakeRound() {
   const int taken = TakeDescriptions() + TakeMessages();
-  const int depth_taken = TakeSamples(&ends_.depth, kFramesPerRound);
-  const int thermal_taken = TakeSamples(&ends_.thermal, kFramesPerRound);
+  const int depth_taken = TakeSamples(&ends_->depth, kFramesPerRound);
+  const int thermal_taken = TakeSamples(&ends_->thermal, kFramesPerRound);
   const int pieces_taken = TakePieces();
   // A few at a time: what is live comes first.
-  const int backfill_taken = TakeSamples(&ends_.backfill_depth, kBackfillPerRound) +
-                             TakeSamples(&ends_.backfill_thermal, kBackfillPerRound);
+  const int backfill_taken = TakeSamples(&ends_->backfill_depth, kBackfillPerRound) +
+                             TakeSamples(&ends_->backfill_thermal, kBackfillPerRound);
   // A description may end a session, whose last frames were sent before it on other topics: those
   // have arrived by now, and are taken first.
   const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerRound ||
@@ -112,11 +123,11 @@ bool DdsSubscriber::TakeRound() {
 
 int DdsSubscriber::TakeDescriptions() {
   if (!descriptions_.empty()) return 0;
-  return ends_.rig.Take(
+  return ends_->rig.Take(
       [this](Received<RigDescription>&& received) {
         if (!IsFollowed(received.edge_id)) return;
         descriptions_.push_back(
-            {peers_.Identify(ends_.rig, received.writer),
+            {peers_.Identify(ends_->rig, received.writer),
              {.content = std::move(received.message), .arrival = clock_.Now()}});
       },
       kMessagesPerRound);
@@ -135,10 +146,10 @@ void DdsSubscriber::AdmitDescriptions() {
 }
 
 int DdsSubscriber::TakeMessages() {
-  const int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
-  return taken + TakeSamples(&ends_.external_odometry, kMessagesPerRound) +
-         TakeSamples(&ends_.status, kMessagesPerRound) +
-         TakeSamples(&ends_.results, kMessagesPerRound);
+  const int taken = ends_->peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
+  return taken + TakeSamples(&ends_->external_odometry, kMessagesPerRound) +
+         TakeSamples(&ends_->status, kMessagesPerRound) +
+         TakeSamples(&ends_->results, kMessagesPerRound);
 }
 
 template <typename Message>
@@ -155,10 +166,10 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
 }
 
 int DdsSubscriber::TakePieces() {
-  return ends_.pieces.Take(
+  return ends_->pieces.Take(
       [this](Received<FramePiece>&& received) {
         if (!IsFollowed(received.edge_id)) return;
-        const PeerHandle peer = peers_.Identify(ends_.pieces, received.writer);
+        const PeerHandle peer = peers_.Identify(ends_->pieces, received.writer);
         const SteadyTime now = clock_.SteadyNow();
         auto frame = pieces_.Add(peer, gate_.owner(), std::move(received.message), now);
         if (!frame) return;
@@ -171,7 +182,7 @@ void DdsSubscriber::ReportPieces(SteadyTime now) {
   piece_report_due_ = now + kPieceReportInterval;
   const std::optional<PieceReport> report = pieces_.TakeReport(gate_.owner());
   // What is not reported is reported with the next.
-  if (report) static_cast<void>(ends_.piece_report.Write(followed_.edge_id(), *report));
+  if (report) static_cast<void>(ends_->piece_report.Write(followed_.edge_id(), *report));
 }
 
 void DdsSubscriber::OnAdmitted(const RigDescription& rig, CaptureTime /*arrival*/) {
@@ -197,7 +208,7 @@ void DdsSubscriber::OnAdmitted(const EdgeStatus& status, CaptureTime /*arrival*/
   const ClockReading now = ReadClocks(clock_);
   if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
   echo_.OnStatus(gate_.owner(), status, now.steady);
-  served_.OnStatus(status, self_, now.steady);
+  served_.OnStatus(status, ends_->self, now.steady);
   clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);
   const std::vector<ScanMark> marks = sessions_.OnStatus(status, now.steady);
   sessions_.SetClock(clock_watch_.clock());
@@ -228,7 +239,7 @@ bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
 void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
   if (peer.message.role != Role::kEdge) return;
   const Status compatible = CheckCompatible(own_hello_, peer.message);
-  const PeerHandle process = peers_.Identify(ends_.peers, peer.writer);
+  const PeerHandle process = peers_.Identify(ends_->peers, peer.writer);
   if (!compatible.ok()) {
     watch_.AddStranger(process);
     return refusals_.all.Add(RefusalCause::kOtherVersion, compatible.message());
@@ -238,15 +249,24 @@ void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
   followed_.See(peer.edge_id);
 }
 
+void DdsSubscriber::EnterRecorded() {
+  const SteadyTime now = clock_.SteadyNow();
+  for (const auto& [session, sensor, frames] : TakeRecorded()) {
+    if (sensor == Sensor::kDepth) depth_.AddRecorded(session, frames, now);
+    if (sensor == Sensor::kThermal) thermal_.AddRecorded(session, frames, now);
+  }
+}
+
 void DdsSubscriber::Housekeep() {
   if (handlers_.turn) handlers_.turn();
+  EnterRecorded();
   const SteadyTime now = clock_.SteadyNow();
   depth_.DeliverDue(now);
   thermal_.DeliverDue(now);
   if (now >= receipt_due_ || frames_since_receipt_ >= frames_per_receipt_) SendReceipt(now);
-  if (now >= piece_report_due_) ReportPieces(now);
+  if (ends_ && now >= piece_report_due_) ReportPieces(now);
   CloseSessions(now);
-  if (now >= look_due_) LookAround(now);
+  if (ends_ && now >= look_due_) LookAround(now);
   KeepCounters();
   MutexLock lock(mutex_);
   stats_.counters = history_.Newest();
@@ -260,27 +280,28 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   gate_.Update(now, is_present);
   const std::string edge_id = followed_.edge_id();
   const RigSighting sighting =
-      watch_.Look(now, edge_id, ends_.status.matched_writers() > 0, is_present);
+      watch_.Look(now, edge_id, ends_->status.matched_writers() > 0, is_present);
   std::string problem =
-      watch_.LookAtWays(now, edge_id, ends_.announced.Of(Role::kEdge), echo_.deaf_rig());
+      watch_.LookAtWays(now, edge_id, ends_->announced.Of(Role::kEdge), echo_.deaf_rig());
   if (problem.empty()) problem = SecondGroundText();
   if (!sighting.problem.empty()) problem = sighting.problem;
   for (const std::uint64_t session : sighting.sessions_to_refuse) {
     Receipt refusal;
     refusal.session = session;
     refusal.verdict = SessionVerdict::kOtherRig;
-    static_cast<void>(ends_.receipt.Write(edge_id, refusal));  // Repeated every second.
+    static_cast<void>(ends_->receipt.Write(edge_id, refusal));  // Repeated every second.
   }
   MutexLock lock(mutex_);
   stats_.rig_problem = std::move(problem);
   if (sighting.present == stats_.edge_present) return;
   stats_.edge_present = sighting.present;
+  stats_.edge_lost = sighting.present ? std::nullopt : std::optional(now);
   LOG(Subscriber, Info) << (sighting.present ? "rig found" : "rig lost");
 }
 
 std::string DdsSubscriber::SecondGroundText() const {
   if (served_.other() == 0) return {};
-  const std::map<PeerHandle, Announcement> grounds = ends_.announced.Of(Role::kGround);
+  const std::map<PeerHandle, Announcement> grounds = ends_->announced.Of(Role::kGround);
   const auto other = grounds.find(served_.other());
   if (other == grounds.end()) return {};  // It has left, and the rig does not know it yet.
   return fmt::format(
@@ -323,7 +344,7 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
   receipt_due_ =
       std::clamp(receipt_due_ + options_.receipt_interval, now, now + options_.receipt_interval);
   const std::string edge_id = followed_.edge_id();
-  if (edge_id.empty()) return;
+  if (edge_id.empty() || !ends_) return;
   Receipt receipt;  // Without a session it says only which rig this ground follows.
   if (const auto session = sessions_.newest()) {
     receipt.session = *session;
@@ -333,7 +354,7 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
   const bool is_new = receipt.depth.received + receipt.thermal.received < kFirstFrames;
   frames_per_receipt_ = is_new ? 1 : kFramesPerReceipt;
   receipt.clock_ping = clock_comparison_.Ping(clock_.SteadyNow());
-  const Status sent = ends_.receipt.Write(edge_id, receipt);
+  const Status sent = ends_->receipt.Write(edge_id, receipt);
   if (!sent.ok()) {
     LOG(Subscriber, Debug) << "receipt not sent: " << sent.message();
   }
@@ -346,44 +367,6 @@ Nanoseconds DdsSubscriber::TimeToNextDuty(SteadyTime now) const {
     if (deadline) next = std::min(next, *deadline);
   }
   return std::max(Nanoseconds(0), Nanoseconds(next - now));
-}
-
-Status DdsSubscriber::Publish(const Feedback& feedback) {
-  const std::string edge_id = followed_.edge_id();
-  if (edge_id.empty()) return Unavailable("no rig seen yet");
-  return ends_.feedback.Write(edge_id, feedback);
-}
-
-Result<std::uint64_t> DdsSubscriber::Send(Command command) {
-  const std::string edge_id = followed_.edge_id();
-  {
-    MutexLock lock(mutex_);
-    command.number = next_command_++;
-  }
-  if (edge_id.empty()) return Err(Unavailable("no rig seen yet"));
-  command.time = clock_.Now();
-  if (const Status sent = ends_.command.Write(edge_id, command); !sent.ok()) return Err(sent);
-  return command.number;
-}
-
-SubscriberStats DdsSubscriber::stats() const {
-  MutexLock lock(mutex_);
-  return stats_;
-}
-
-SessionCounters DdsSubscriber::counters(std::uint64_t session) const {
-  MutexLock lock(mutex_);
-  return history_.Get(session);
-}
-
-Result<std::unique_ptr<Subscriber>> Subscriber::Create(const Participant& participant,
-                                                       const Clock& clock,
-                                                       const SubscriberOptions& options,
-                                                       SubscriberHandlers handlers) {
-  if (const Status valid = Validate(options); !valid.ok()) return Err(valid);
-  auto subscriber = std::make_unique<DdsSubscriber>(clock, options, std::move(handlers));
-  if (const Status opened = subscriber->Open(participant); !opened.ok()) return Err(opened);
-  return subscriber;
 }
 
 }  // namespace isotherm

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -33,16 +35,23 @@ class DdsSubscriber final : public Subscriber {
  public:
   DdsSubscriber(const Clock& clock, const SubscriberOptions& options, SubscriberHandlers handlers);
 
-  Status Open(const Participant& participant);
-
   void Run(std::stop_token stop) override;
+  bool Leave(const std::function<bool()>& go_on) override;
+  Status Join(const Participant& participant) override;
   Status Publish(const Feedback& feedback) override;
   Result<std::uint64_t> Send(Command command) override;
+  void AddRecorded(RecordedNumbers recorded) override;
   SubscriberStats stats() const override;
   SessionCounters counters(std::uint64_t session) const override;
   const RefusalCounter& refusals() const override { return refusals_.all; }
 
  private:
+  /// Takes over what others have left or joined. Returns whether there is a network.
+  bool FollowNetwork();
+  std::shared_ptr<GroundEndpoints> joined_ends() const {
+    MutexLock lock(mutex_);
+    return joined_ends_;
+  }
   /// Takes some of what has arrived; false if there was nothing.
   bool TakeRound();
   int TakeMessages();
@@ -55,6 +64,12 @@ class DdsSubscriber final : public Subscriber {
   int TakePieces();
   /// Does what is due: deliveries, receipts, closed sessions, statistics.
   void Housekeep();
+  std::vector<RecordedNumbers> TakeRecorded() {
+    MutexLock lock(mutex_);
+    return std::exchange(recorded_, {});
+  }
+  /// Tells both streams what an earlier process has recorded of them.
+  void EnterRecorded();
   void CloseSessions(SteadyTime now);
   /// Keeps the counters of the newest session and of the one before, as they are now.
   void KeepCounters();
@@ -88,9 +103,9 @@ class DdsSubscriber final : public Subscriber {
   const Hello own_hello_;
   FollowedRig followed_;
   StreamRefusals refusals_;
-  GroundEndpoints ends_;
 
   // Of the thread in Run().
+  std::shared_ptr<GroundEndpoints> ends_;  ///< Null between Leave() and Join().
   StreamReceiver<ReceivedDepth> depth_;
   StreamReceiver<ReceivedThermal> thermal_;
   PeerTable peers_;
@@ -106,16 +121,17 @@ class DdsSubscriber final : public Subscriber {
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
   ServedWatch served_;
-  PeerHandle self_ = 0;  // As the rig knows this ground.
   EchoWatch echo_;
   SteadyTime receipt_due_{};
   int frames_since_receipt_ = 0;
   int frames_per_receipt_ = 1;
 
   mutable Mutex mutex_;
+  std::shared_ptr<GroundEndpoints> joined_ends_ GUARDED_BY(mutex_);
   std::uint64_t next_command_ GUARDED_BY(mutex_);
   SubscriberStats stats_ GUARDED_BY(mutex_);
   SessionHistory history_ GUARDED_BY(mutex_);
+  std::vector<RecordedNumbers> recorded_ GUARDED_BY(mutex_);  ///< Not yet with the streams.
 };
 
 }  // namespace isotherm

@@ -45,6 +45,13 @@ class FrameSequencer {
     return order;
   }
 
+  /// Enters a frame that is here already: another copy is a duplicate, and those before it are
+  /// late. Returns whether it is new.
+  bool AddKnown(std::uint64_t number) {
+    if (waiting_.empty()) handled_ = std::max(handled_, number + 1);
+    return receipts_.Add(number);
+  }
+
   /// The next frame in line, if it is time for it. Call until nullopt.
   std::optional<T> Next(SteadyTime now) {
     if (waiting_.empty()) return std::nullopt;

@@ -3,6 +3,7 @@
 namespace isotherm {
 
 Status GroundEndpoints::Open(const Participant& participant, StreamRefusals& refusals) {
+  self = participant.peer();
   ISOTHERM_RETURN_IF_ERROR(depth.Open(participant, &refusals.depth));
   ISOTHERM_RETURN_IF_ERROR(thermal.Open(participant, &refusals.thermal));
   ISOTHERM_RETURN_IF_ERROR(pieces.Open(participant, &refusals.all));

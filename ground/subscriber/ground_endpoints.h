@@ -17,6 +17,7 @@ struct GroundEndpoints {
   /// `refusals`, which must outlive the readers, get the samples that cannot be decoded.
   Status Open(const Participant& participant, StreamRefusals& refusals);
 
+  PeerHandle self = 0;  ///< As the rig knows this ground.
   Reader<EncodedDepthFrame> depth;
   Reader<EncodedThermalFrame> thermal;
   Reader<FramePiece> pieces;

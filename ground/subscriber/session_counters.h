@@ -17,6 +17,8 @@ struct StreamCounters {
   std::uint64_t published =
       0;  ///< As the edge says; while it has not said it yet, what can be inferred.
   std::uint64_t received = 0;
+  /// Part of received: they did not come now, an earlier process of the ground has recorded them.
+  std::uint64_t recorded_before = 0;
   std::uint64_t missing = 0;
   std::uint64_t late = 0;        ///< Received behind the reorder window.
   std::uint64_t duplicates = 0;  ///< Further copies, dropped.

@@ -18,6 +18,7 @@ constexpr std::size_t kMaxKeptMarks = 100;
 StreamCounters MakeCounters(const StreamTally& tally, const StreamStatus& rig, bool final) {
   StreamCounters counters;
   counters.received = tally.received;
+  counters.recorded_before = tally.recorded_before;
   counters.published = std::max(rig.published, final ? tally.received : tally.next);
   counters.missing = counters.published - counters.received;
   counters.late = tally.late;

@@ -74,6 +74,18 @@ bool StreamReceiver<ReceivedFrame>::IsWanted(const FrameHeader& header) {
 }
 
 template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::AddRecorded(std::uint64_t session,
+                                                const std::vector<RecordedNumbers::Frame>& frames,
+                                                SteadyTime now) {
+  if (std::ranges::find(over_, session) != over_.end()) return;
+  if (!IsCurrent(session)) BeginSession(session);
+  for (const auto& [number, time] : frames) {
+    tally_.recorded_before += sequencer_->AddKnown(number) ? 1 : 0;
+    if (!newest_ || number > newest_->number) newest_ = FrameMark{number, time, now};
+  }
+}
+
+template <typename ReceivedFrame>
 bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
   const FrameHeader header = encoded.header;
   if (!IsWanted(header)) return false;
@@ -84,7 +96,11 @@ bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, 
     Refuse(RefusalCause::kUndecodable, header);
     return false;
   }
-  if (!IsCurrent(header.session)) BeginSession(header);
+  if (!IsCurrent(header.session)) {
+    BeginSession(header.session);
+    LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
+                          << " frame_number=" << header.frame_number;
+  }
   const FrameMark mark{header.frame_number, header.capture_time, now};
   ReceivedFrame item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
   if (newest_) {
@@ -100,9 +116,9 @@ bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, 
 }
 
 template <typename ReceivedFrame>
-void StreamReceiver<ReceivedFrame>::BeginSession(const FrameHeader& header) {
+void StreamReceiver<ReceivedFrame>::BeginSession(std::uint64_t session) {
   DeliverAll();
-  if (newest_) {
+  if (std::exchange(has_begun_, true)) {
     // The old session's tally is still asked for, until its end is reported.
     previous_ = tally(tally_.session);
     refused_before_ = refusals_->counts();
@@ -111,10 +127,8 @@ void StreamReceiver<ReceivedFrame>::BeginSession(const FrameHeader& header) {
   }
   newest_.reset();
   tally_ = {};
-  tally_.session = header.session;
+  tally_.session = session;
   sequencer_.emplace(reorder_window_);
-  LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
-                        << " frame_number=" << header.frame_number;
 }
 
 template <typename ReceivedFrame>

@@ -12,6 +12,7 @@
 #include "ground/subscriber/frame_sequencer.h"
 #include "ground/subscriber/frame_succession.h"
 #include "ground/subscriber/received_frame.h"
+#include "ground/subscriber/recorded_numbers.h"
 #include "ground/subscriber/stream_tally.h"
 
 namespace isotherm {
@@ -45,6 +46,11 @@ class StreamReceiver {
 
   /// Says whether the frames of this session come as fast as the ground takes them.
   void SetReplay(bool replay) { replay_ = replay; }
+  /// Enters frames of `session`, which begins by that, that an earlier process has recorded, in the
+  /// order of their numbers: further copies are duplicates, the rig is told that they are here, and
+  /// what comes must follow the last of them.
+  void AddRecorded(std::uint64_t session, const std::vector<RecordedNumbers::Frame>& frames,
+                   SteadyTime now);
   /// Takes a frame that has passed the transport's checks, and delivers none. Returns true if it
   /// was good and new.
   bool Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now);
@@ -66,10 +72,10 @@ class StreamReceiver {
   static constexpr std::size_t kMaxRemembered =
       32;  ///< Sessions that must not come back; each is one start of a scan.
 
-  bool IsCurrent(std::uint64_t session) const { return newest_ && session == tally_.session; }
+  bool IsCurrent(std::uint64_t session) const { return has_begun_ && session == tally_.session; }
   /// True if a frame with this header would be taken; counts it if not.
   bool IsWanted(const FrameHeader& header);
-  void BeginSession(const FrameHeader& header);
+  void BeginSession(std::uint64_t session);
   void Accept(ReceivedFrame&& item, const FrameMark& mark);
   /// Makes a frame pending that `cause` speaks against. Returns true if it was accepted at once.
   bool AddPending(ReceivedFrame&& item, const FrameMark& mark, RefusalCause cause);
@@ -98,6 +104,7 @@ class StreamReceiver {
     RefusalCause cause;
   };
   bool replay_ = false;
+  bool has_begun_ = false;          ///< There is a session.
   std::vector<Pending> pending_;    ///< Each follows the one before it.
   StreamTally tally_;               ///< But for what sequencer_ and refusals_ count.
   RefusalCounts refused_before_{};  ///< When the session began.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "common/codec/codec.h"
@@ -13,6 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 
 constexpr CaptureTime kArrival = CaptureTimeFromNanoseconds(1'000);
 
@@ -45,6 +47,20 @@ class StreamReceiverTest : public ::testing::Test {
     std::vector<std::uint64_t> numbers;
     for (const auto& item : items) numbers.push_back(item.frame->header.frame_number);
     return numbers;
+  }
+
+  static constexpr Nanoseconds kInterval = 100ms;
+  void AddRecorded(std::uint64_t session, const std::vector<std::uint64_t>& numbers) {
+    std::vector<RecordedNumbers::Frame> frames;
+    for (const std::uint64_t number : numbers)
+      frames.push_back({number, CaptureTimeFromNanoseconds((kInterval * number).count())});
+    receiver_.AddRecorded(session, frames, now_);
+  }
+  static std::vector<std::pair<std::uint64_t, std::uint64_t>> Ranges(
+      const std::vector<FrameRange>& holes) {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
+    for (const FrameRange& hole : holes) ranges.emplace_back(hole.first, hole.last);
+    return ranges;
   }
 
   RefusalCounter refusals_;
@@ -295,6 +311,48 @@ TEST_F(ReplayLaneTest, AWildFrameIsRefusedAndStopsNoneBehindIt) {
   receiver_.DeliverAll();
   EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 2));
   EXPECT_EQ(refusals_.count(RefusalCause::kImplausibleTime), 2U);
+}
+
+TEST_F(StreamReceiverTest, F32WhatIsRecordedAlreadyIsNotAskedForAndNotTakenAgain) {
+  AddRecorded(7, {0, 1, 2, 5});  // Before the session's first frame.
+  EXPECT_EQ(receiver_.receipt(7).next, 6U) << "also of a camera of which nothing more comes";
+  EXPECT_EQ(receiver_.receipt(7).handled, 6U);
+  EXPECT_TRUE(Add(At(7, 9, kInterval * 9)));
+  EXPECT_THAT(Ranges(receiver_.receipt(7).holes), ElementsAre(Pair(3, 4), Pair(6, 8)));
+  AddRecorded(7, {3, 4, 5, 9});
+  EXPECT_THAT(Ranges(receiver_.receipt(7).holes), ElementsAre(Pair(6, 8)));
+  EXPECT_EQ(receiver_.receipt(7).next, 10U);
+  EXPECT_EQ(receiver_.receipt(7).received, 7U);
+  EXPECT_EQ(receiver_.tally(7).recorded_before, 6U) << "the fifth twice, the ninth came";
+  EXPECT_FALSE(Add(At(7, 4, kInterval * 4)));
+  EXPECT_EQ(receiver_.tally(7).duplicates, 1U);
+  now_ += 1s;
+  receiver_.DeliverDue(now_);
+  EXPECT_TRUE(Add(At(7, 6, kInterval * 6)));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(9));
+  EXPECT_THAT(Numbers(late_), ElementsAre(6));
+}
+
+TEST_F(StreamReceiverTest, F32WhatComesFollowsTheLastRecordedFrame) {
+  // Five minutes are recorded; the first frame that comes is one of the first that lack.
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 1; i < 3000; ++i) numbers.push_back(i);
+  AddRecorded(7, numbers);
+  EXPECT_TRUE(Add(At(7, 0, kInterval * 0)));
+  EXPECT_TRUE(Add(At(7, 3100, kInterval * 3100)));
+  EXPECT_EQ(refusals_.total(), 0U);
+  EXPECT_THAT(Numbers(late_), ElementsAre(0));
+  receiver_.DeliverAll();
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(3100));
+}
+
+TEST_F(StreamReceiverTest, F32WhatIsRecordedOfASessionThatIsOverChangesNothing) {
+  EXPECT_TRUE(Add(MakeFrame(7, 0)));
+  EXPECT_TRUE(Add(MakeFrame(8, 2)));
+  AddRecorded(7, {0, 1, 2});
+  EXPECT_EQ(receiver_.receipt(8).received, 1U);
+  EXPECT_EQ(receiver_.tally(8).recorded_before, 0U);
+  EXPECT_EQ(receiver_.tally(7).received, 1U);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "common/transport/participant.h"
 #include "common/transport/refusal.h"
 #include "ground/subscriber/received_frame.h"
+#include "ground/subscriber/recorded_numbers.h"
 #include "ground/subscriber/session_counters.h"
 #include "ground/subscriber/subscriber_options.h"
 
@@ -48,6 +49,7 @@ struct SubscriberStats {
   RefusalCounts refusals{};      ///< Samples of all topics since the start, by cause.
   std::uint64_t other_edge = 0;  ///< Samples of rigs that are not followed.
   bool edge_present = false;
+  std::optional<SteadyTime> edge_lost{};  ///< When it was lost; nullopt while it is there.
   /// Tells the operator what is wrong with the rigs that are there: another one than the one that
   /// is followed, or two of one name. Empty = nothing.
   std::string rig_problem;
@@ -68,9 +70,19 @@ class Subscriber {
   /// last receipt.
   virtual void Run(std::stop_token stop) = 0;
 
+  /// Gives the network up, and returns true when the participant may go. What has been received
+  /// stays known. To be called while Run() goes on, whose thread may be held up: `go_on` is asked
+  /// all the time, and false ends the wait, with false.
+  virtual bool Leave(const std::function<bool()>& go_on) = 0;
+  /// Goes on with another participant, which must outlive the subscriber or the next Leave().
+  virtual Status Join(const Participant& participant) = 0;
+
   virtual Status Publish(const Feedback& feedback) = 0;
   /// Sends a command and returns its number, under which the result comes back.
   virtual Result<std::uint64_t> Send(Command command) = 0;
+
+  /// Enters frames that are here already: the rig is told so, and further copies are dropped.
+  virtual void AddRecorded(RecordedNumbers recorded) = 0;
 
   virtual SubscriberStats stats() const = 0;
   /// The newest counters of one of the last sessions, also of one that never ended; only the number

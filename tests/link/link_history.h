@@ -80,10 +80,28 @@ class LossyWay {
   std::vector<UnderWay> under_way_;
 };
 
-/// The ground's process: it puts frames in order, and tells what it has.
+/// The ground's process: it puts frames in order, records them, and tells what it has.
 class GroundEnd {
  public:
-  explicit GroundEnd(const Clock& clock) : clock_(clock) {}
+  /// Holds what has been recorded, by Sensor and number.
+  using Recording = std::array<std::map<std::uint64_t, FrameHeader>, 2>;
+
+  /// `before` was recorded by processes before, which this one has found out after `survey`.
+  explicit GroundEnd(const Clock& clock, Recording before = {}, Nanoseconds survey = {})
+      : clock_(clock), before_(std::move(before)), surveyed_(clock.SteadyNow() + survey) {}
+
+  /// Returns what is on the disk when the process is killed: all but what was not flushed.
+  Recording Kill() const {
+    constexpr Nanoseconds kFlushInterval = std::chrono::milliseconds(500);
+    Recording on_disk = before_;
+    for (const Sensor sensor : kSensors) {
+      for (const auto& [recorded, header] : recorded_.at(IndexOf(sensor))) {
+        if (recorded + kFlushInterval < clock_.SteadyNow())
+          on_disk.at(IndexOf(sensor)).emplace(header.frame_number, header);
+      }
+    }
+    return on_disk;
+  }
 
   void Take(const AnyFrame& frame) {
     const CaptureTime arrival = clock_.Now();
@@ -97,6 +115,7 @@ class GroundEnd {
   /// Returns a receipt when one is due.
   std::optional<Receipt> Step(std::uint64_t session) {
     const SteadyTime now = clock_.SteadyNow();
+    if (now >= surveyed_) Tell(session);
     depth_.DeliverDue(now);
     thermal_.DeliverDue(now);
     constexpr int kFramesPerReceipt = 8;
@@ -117,17 +136,36 @@ class GroundEnd {
     std::vector<FrameHeader> late;
   };
   const Used& used(Sensor sensor) const { return used_.at(IndexOf(sensor)); }
+  const std::map<std::uint64_t, FrameHeader>& before(Sensor sensor) const {
+    return before_.at(IndexOf(sensor));
+  }
 
  private:
+  /// Tells the streams what is recorded.
+  void Tell(std::uint64_t session) {
+    surveyed_ = SteadyTime::max();
+    for (const Sensor sensor : kSensors) {
+      std::vector<RecordedNumbers::Frame> frames;
+      for (const auto& [number, header] : before(sensor))
+        frames.push_back({number, header.capture_time});
+      const SteadyTime now = clock_.SteadyNow();
+      if (sensor == Sensor::kDepth) depth_.AddRecorded(session, frames, now);
+      if (sensor == Sensor::kThermal) thermal_.AddRecorded(session, frames, now);
+    }
+  }
   template <typename Received>
   std::function<void(Received)> Into(Sensor sensor, std::vector<FrameHeader> Used::*list) {
     return [this, sensor, list](const Received& received) {
       (used_.at(IndexOf(sensor)).*list).push_back(received.frame->header);
+      recorded_.at(IndexOf(sensor)).emplace_back(clock_.SteadyNow(), received.frame->header);
     };
   }
 
   const Clock& clock_;
+  const Recording before_;
+  SteadyTime surveyed_;
   std::array<Used, 2> used_;
+  std::array<std::vector<std::pair<SteadyTime, FrameHeader>>, 2> recorded_;  ///< And when.
   std::array<RefusalCounter, 2> refusals_;
   static constexpr Nanoseconds kReorderWindow = std::chrono::milliseconds(200);
   StreamReceiver<ReceivedDepth> depth_{"depth", kReorderWindow, &refusals_[0],

@@ -220,7 +220,9 @@ class History {
     back_.loss = way_.loss;
     back_.delay = way_.delay;
     if (Chance(6)) {
-      ground_.emplace(clock_);
+      // With its recording, or with an empty disk.
+      GroundEnd::Recording on_disk = Chance(3) ? GroundEnd::Recording() : ground_->Kill();
+      ground_.emplace(clock_, std::move(on_disk), 100ms * (random_() % 10));
       ++grounds_;
     }
     if (edge_ && Chance(4)) {
@@ -289,6 +291,13 @@ class History {
           ASSERT_NE(sent, captured.end()) << "a frame that nobody captured";
           EXPECT_EQ(header.capture_time, sent->second) << "a wrong frame";
         }
+      }
+      // A frame that came once more before it was known to be recorded is in two files.
+      for (const auto& [number, header] : ground_->before(sensor)) {
+        const auto sent = captured.find(number);
+        ASSERT_NE(sent, captured.end()) << "a frame that nobody captured";
+        EXPECT_EQ(header.capture_time, sent->second) << "a wrong frame";
+        got.insert(number);
       }
       EXPECT_TRUE(std::ranges::is_sorted(used.live, {}, &FrameHeader::frame_number));
       EXPECT_TRUE(std::ranges::is_sorted(used.live, {}, &FrameHeader::capture_time));

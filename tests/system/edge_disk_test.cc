@@ -16,6 +16,7 @@
 namespace isotherm::system_test {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
@@ -149,6 +150,26 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
   EXPECT_EQ(published.done, published.captured);
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
+}
+
+TEST_F(SmallDiskTest, F41AScanThatIsToBeRecordedWholeIsStoppedAtTheReserveAndAnotherCanBegin) {
+  Mount(64);
+  if (IsSkipped()) return;
+  Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_s=86400", "--set",
+                       "spool.expert.reserve_mb=66", "--set", "spool.when_full=STOP_SCAN"}));
+  // The manager must be read from meanwhile.
+  EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: the disk is full", kPatience));
+  ASSERT_TRUE(edge.WaitForOutput("the scan has ended as ordered", kPatience)) << edge.output();
+  EXPECT_THAT(edge.output(), HasSubstr("the scan is stopped (spool.when_full=STOP_SCAN)"));
+  const RecordingContent content = ReadRecording(file_);
+  EXPECT_TRUE(content.complete);
+  EXPECT_THAT(content.depth, Not(IsEmpty()));
+  EXPECT_FALSE(edge.HasEnded(Seconds(0))) << "it waits for the order to start another one";
+  ExpectToLeave(edge, 73);
+  const FrameCountersText recorded = CountersOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(recorded.Closes()) << edge.output();
+  // Some come while it is noticed.
+  EXPECT_LT(recorded.captured - recorded.done, 200) << edge.output();
 }
 
 }  // namespace

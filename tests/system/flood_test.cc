@@ -36,6 +36,9 @@ constexpr int kNames = 30'000;
 /// Unbounded they took 0.6 kB per name and topic, 18 MB each; bounded, 0.1 to 1.3 MB in all.
 constexpr long kMaxGrowth_kb = 4 * 1024;
 
+/// A scan goes on meanwhile, whose model grows; 200 bytes kept of each packet would be 40 MB.
+constexpr long kMaxGrowthInAScan_kb = 24 * 1024;
+
 /// Resident memory.
 long MemoryOf_kb(pid_t pid) {
   std::ifstream statm("/proc/" + std::to_string(pid) + "/statm");
@@ -125,8 +128,6 @@ TEST(FloodTest, F64MalformedPacketsLeaveALineInTenSecondsWithTheirNumberAndNothi
     ASSERT_TRUE(daemon->WaitForOutput("malformed packet", kPatience)) << daemon->output();
     const auto first_line = std::chrono::steady_clock::now();
     const long before_kb = MemoryOf_kb(daemon->pid());
-    // A scan goes on meanwhile, whose model grows; 200 bytes kept of each packet would be 40 MB.
-    constexpr long kMaxGrowthInAScan_kb = 24 * 1024;
     packets.Send(ports, 200'000);
     EXPECT_LT(MemoryOf_kb(daemon->pid()) - before_kb, kMaxGrowthInAScan_kb);
     while (!daemon->WaitForOutput("more since the last such line", Seconds(0.1))) {
@@ -141,6 +142,69 @@ TEST(FloodTest, F64MalformedPacketsLeaveALineInTenSecondsWithTheirNumberAndNothi
   edge.Signal(SIGTERM);
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
   ASSERT_TRUE(ground.WaitForOutput("scan ended", kPatience)) << "it still listens";
+}
+
+/// Holds how much more memory both daemons took at a scan's end than at its beginning.
+struct ScanGrowth {
+  long edge_kb = 0, ground_kb = 0;
+};
+
+/// Carries a scan of some seconds, with hostile peers beside or without, and expects that no frame
+/// is lost.
+ScanGrowth CarryScan(const std::filesystem::path& folder, bool is_hostile) {
+  const std::string domain = std::to_string(OwnDomain());
+  const std::filesystem::path copy = folder / "copy.mcap", results = folder / "ground";
+  std::vector<std::string> arguments = {"--domain", domain, "--output", results};
+  const std::vector<std::string> quick = QuickScan();
+  arguments.insert(arguments.end(), quick.begin(), quick.end());
+  SimulateScan(folder / "source.mcap", 2.0);
+  Process ground({GroundService(), arguments, {}});
+  Process edge({EdgeDaemon(),
+                {"--recording", folder / "source.mcap", "--domain", domain, "--record", copy,
+                 "--exit-at-end", "--wait-for-ground", "--set", "source.loops=6", "--set",
+                 "link.expert.linger_s=30"},
+                {}});
+  EXPECT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output();
+  const long edge_kb = MemoryOf_kb(edge.pid()), ground_kb = MemoryOf_kb(ground.pid());
+  std::vector<std::unique_ptr<Process>> peers;
+  if (is_hostile) {
+    // Ever new names, the same taken back, and types that end too early under the rig's name.
+    constexpr const char* kFlood = "5000";
+    for (const Command& peer :
+         {Command{FLOOD_PEER, {domain, kFlood}, {}},
+          Command{FLOOD_PEER, {domain, kFlood, "take-back"}, {}},
+          Command{SHORT_PEER, {domain, "edge"}, {}}, Command{SHORT_PEER, {domain, "edge"}, {}}})
+      peers.push_back(std::make_unique<Process>(peer));
+    const MalformedPackets packets;
+    for (const Process* daemon : {&edge, &ground}) packets.Send(PortsOf(daemon->pid()), 10'000);
+    EXPECT_TRUE(peers.back()->WaitForOutput("delivered", kPatience)) << peers.back()->output();
+    EXPECT_FALSE(edge.HasEnded(Seconds(0))) << "the scan was too short";
+  }
+  ScanGrowth growth;
+  growth.edge_kb = MemoryOf_kb(edge.pid()) - edge_kb;
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  EXPECT_TRUE(ground.WaitForOutput("results  /", kPatience)) << ground.output();
+  growth.ground_kb = MemoryOf_kb(ground.pid()) - ground_kb;
+  ground.Signal(SIGTERM);
+  EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+  const RecordingContent sent = ReadRecording(copy);
+  const std::filesystem::path scan = std::filesystem::directory_iterator(results)->path();
+  const RecordingContent received = ReadRecording(scan / "scan.mcap");
+  EXPECT_GT(sent.depth.size(), 100U);
+  EXPECT_TRUE(received.depth == sent.depth) << received.depth.size() << " of " << sent.depth.size();
+  EXPECT_TRUE(received.thermal == sent.thermal);
+  EXPECT_EQ(NumberAt(ReadStats(scan), {"link", "refused_samples"}) > 0, is_hostile);
+  return growth;
+}
+
+TEST(FloodTest, FourHostilePeersAtOnceCostNoFrameAndNoMemory) {
+  const testing::TemporaryDirectory alone, beside_peers;
+  const ScanGrowth usual = CarryScan(alone.path(), false);
+  const ScanGrowth hostile = CarryScan(beside_peers.path(), true);
+  std::cout << "edge " << hostile.edge_kb << " kB more, alone " << usual.edge_kb << "; ground "
+            << hostile.ground_kb << " and " << usual.ground_kb << "\n";
+  EXPECT_LT(hostile.edge_kb - usual.edge_kb, kMaxGrowthInAScan_kb);
+  EXPECT_LT(hostile.ground_kb - usual.ground_kb, kMaxGrowthInAScan_kb);
 }
 
 /// Names come with samples, or are only taken back.

@@ -234,6 +234,25 @@ class LinkOutageTest : public TwoHostsTest {
     }
   }
 
+  /// The results are those that the rig's own recording gives, byte for byte.
+  void ExpectResultsOfTheWholeScan() const {
+    const std::filesystem::path whole = folder_.path() / "whole";
+    std::vector<std::string> arguments = {"reconstruct", copy_, "-o", whole};
+    const std::vector<std::string> quick = QuickScan();
+    arguments.insert(arguments.end(), quick.begin(), quick.end());
+    const Finished made = RunToEnd({Tool(), arguments, {}}, kPatience);
+    ASSERT_EQ(made.status, 0) << made.output;
+    const auto content = [](const std::filesystem::path& file) {
+      std::ostringstream text;
+      text << std::ifstream(file).rdbuf();
+      return text.str();
+    };
+    for (const char* name : {"trajectory.txt", "cloud.ply"}) {
+      EXPECT_GT(std::filesystem::file_size(whole / name), 100U) << name;
+      EXPECT_TRUE(content(GroundFolder() / name) == content(whole / name)) << name;
+    }
+  }
+
   /// Otherwise the others show nothing.
   void ExpectThatPacketsWereLost() const {
     const long at_ground = Lost(ground_), at_edge = Lost(edge_);

@@ -100,6 +100,7 @@ TEST_F(LinkOutageTest, F25F26ALongOutageCostsNoFrameInTheEndAndTheScanGoesOn) {
     const double fed = NumberAt(outcome.stats, {"frames", name, "in"});
     EXPECT_EQ(fed, outcome.Number(name, "received")) << "the results were made of all";
   }
+  ExpectResultsOfTheWholeScan();
   // In each direction something fails ten times a second and more (F64).
   EXPECT_LE(Count(edge().output(), "Dds: "), 10) << edge().output();
   EXPECT_LE(Count(ground().output(), "Dds: "), 10) << ground().output();
@@ -136,6 +137,34 @@ TEST_F(LinkOutageTest, F32F35AGroundThatComesLateAndOneThatIsStartedAgainGetTheW
   ExpectNothingIsLost(outcome);
 }
 
+TEST_F(LinkOutageTest, F32AGroundThatIsStartedAgainGoesOnWithWhatItHasRecorded) {
+  ASSERT_NO_FATAL_FAILURE(Start(14));
+  ASSERT_TRUE(HasMore(GroundFile(), Seconds(4))) << Said();
+  ground().Signal(SIGKILL);
+  ground().WaitForExit(kPatience);
+  const RecordingContent before = ReadRecording(GroundFile());
+  ASSERT_GT(before.depth.size(), 2 * kSmallScanFrames);
+  ASSERT_NO_FATAL_FAILURE(StartGround(LanProfile(ground_)));
+  ASSERT_TRUE(ground().WaitForOutput("the scan was under way before", kPatience)) << Said();
+  ASSERT_TRUE(ground().WaitForOutput("the model is made anew", kPatience)) << Said();
+  EXPECT_FALSE(edge().HasEnded(Seconds(0))) << "the scan was too short";
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+  for (const auto& [sensor, name] : kStreams) {
+    const std::size_t recorded = Outcome::Of(sensor, before).size();
+    EXPECT_LE(outcome.Number(name, "recorded_before"), static_cast<double>(recorded));
+    // The rig may begin to send before it is told; what it has sent is no part of these.
+    EXPECT_GT(outcome.Number(name, "recorded_before"), 0);
+    EXPECT_EQ(NumberAt(outcome.stats, {"frames", name, "in"}), outcome.Number(name, "received"))
+        << "the results were made of all";
+  }
+  EXPECT_EQ(NumberAt(outcome.stats, {"link", "rebuild", "frames"}),
+            static_cast<double>(before.depth.size() + before.thermal.size()));
+  EXPECT_FALSE(std::filesystem::exists(GroundFolder() / "scan-2.mcap")) << "all is in one file";
+  ExpectResultsOfTheWholeScan();
+}
+
 TEST_F(LinkOutageTest, F30AChangedAddressOfTheRigCostsNoFrame) {
   // Frames of the time between are left for later, of which the new link has to know.
   ASSERT_NO_FATAL_FAILURE(Start(25, {"--set", "link.policy=LIVE"}));
@@ -145,6 +174,51 @@ TEST_F(LinkOutageTest, F30AChangedAddressOfTheRigCostsNoFrame) {
   ASSERT_TRUE(edge().WaitForOutput("ground station found", kPatience, 2)) << Said();
   EXPECT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
   EXPECT_FALSE(edge().HasEnded(Seconds(0))) << "the scan was too short";
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+}
+
+TEST_F(LinkOutageTest, F30AChangedAddressOfTheGroundCostsNoFrameAndKeepsTheModel) {
+  ASSERT_NO_FATAL_FAILURE(Start(25));
+  ASSERT_TRUE(In(ground_, {"addr", "flush", "dev", ground_.interface}));
+  ASSERT_TRUE(In(ground_, {"addr", "add", "192.168.50.88/24", "dev", ground_.interface}));
+  ASSERT_TRUE(ground().WaitForOutput("joining the network anew", kPatience)) << Said();
+  ASSERT_TRUE(ground().WaitForOutput("rig found", kPatience, 2)) << Said();
+  EXPECT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
+  EXPECT_FALSE(edge().HasEnded(Seconds(0))) << "the scan was too short";
+  const Outcome outcome = EndCompleted();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+}
+
+TEST_F(LinkOutageTest, WhereMulticastIsBlockedTheProfileForARadioLosesNothing) {
+  if (!LoseMulticast(ground_) || !LoseMulticast(edge_))
+    GTEST_SKIP() << "this kernel filters nothing";
+  // The addresses are those of the shipped file.
+  const std::string profile = Shipped("cyclonedds-radio.xml");
+  ASSERT_NO_FATAL_FAILURE(Start(5, profile, profile));
+  const Outcome outcome = End();
+  ExpectEachFrameAccountedFor(outcome);
+  ExpectNothingIsLost(outcome);
+  EXPECT_EQ(Lost(ground_), 0) << "nothing is sent by multicast";
+}
+
+TEST_F(LinkOutageTest, WhereMulticastIsBlockedTheOneForALocalNetworkFindsNobody) {
+  if (!LoseMulticast(ground_) || !LoseMulticast(edge_))
+    GTEST_SKIP() << "this kernel filters nothing";
+  ASSERT_NO_FATAL_FAILURE(StartGround(LanProfile(ground_)));
+  StartEdge(1, LanProfile(edge_), {"--wait-for-ground"});
+  ASSERT_TRUE(edge().WaitForOutput("waiting for a ground station", kPatience)) << edge().output();
+  EXPECT_FALSE(ground().WaitForOutput("rig found", Seconds(3))) << Said();
+  EXPECT_GT(Lost(ground_), 0);
+}
+
+TEST_F(LinkOutageTest, F25AGroundThatStandsStillHoldsNothingUpAndGetsAll) {
+  ASSERT_NO_FATAL_FAILURE(Start(12));
+  ground().Signal(SIGSTOP);
+  EXPECT_TRUE(HasMore(copy_, Seconds(5))) << edge().output();
+  ground().Signal(SIGCONT);
   const Outcome outcome = EndCompleted();
   ExpectEachFrameAccountedFor(outcome);
   ExpectNothingIsLost(outcome);

@@ -110,8 +110,13 @@ class LinkSoakTest : public ::testing::Test {
     WriteSmallRig(rig_);
   }
 
+  /// A ground that is started again mostly finds what the one before has recorded, and goes on
+  /// with it.
   void StartGround() {
-    results_ = folder_.path() / ("ground-" + std::to_string(++grounds_));
+    constexpr int kOneInLosesItsDisk = 4;
+    if (grounds_ % kOneInLosesItsDisk == 0)
+      results_ = folder_.path() / ("ground-" + std::to_string(grounds_));
+    ++grounds_;
     std::vector<std::string> arguments = {"--once", "--output", results_};
     const std::vector<std::string> quick = QuickScan();
     arguments.insert(arguments.end(), quick.begin(), quick.end());

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -132,6 +133,59 @@ TEST_F(ScanOrdersTest, AScanIsStoppedAndTheNextIsAScanOfItsOwn) {
   }
   EXPECT_THAT(Results(Path("ground")), HasSubstr("\"text\": \"left burner\""));
   if (HasFailure()) std::cout << "edge:\n" << edge.output() << "ground:\n" << ground.output();
+}
+
+TEST_F(ScanOrdersTest, ARigThatWaitsForItsOrderHasItsCamerasClosedUntilThen) {
+  SimulateScan(Path("source.mcap"), 2.0);
+  Process ground(Ground());
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  Command waiting = Edge();
+  waiting.arguments.emplace_back("--wait-for-order");
+  Process edge(waiting);
+  ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start one", kPatience)) << edge.output();
+  EXPECT_TRUE(ground.WaitForOutput("rig found", kPatience)) << ground.output();
+  EXPECT_THAT(Scan({}).output, HasSubstr("scan          none yet"));
+  EXPECT_EQ(Scan({"--stop"}).status, kRefused);
+  EXPECT_TRUE(std::filesystem::is_empty(Path("recordings")));
+  const Finished started = Scan({"--start"});
+  EXPECT_EQ(started.status, 0) << started.output;
+  EXPECT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output();
+  EXPECT_EQ(Scan({"--stop"}).status, 0);
+  EXPECT_TRUE(ground.WaitForOutput("results  /", kPatience)) << ground.output();
+  edge.Signal(SIGTERM);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  ASSERT_EQ(Recordings(Path("recordings")).size(), 1U);
+  EXPECT_TRUE(Recordings(Path("ground")).at(0).depth == Recordings(Path("recordings")).at(0).depth);
+  EXPECT_EQ(ground.output().find("scan started", ground.output().find("scan started") + 1),
+            std::string::npos)
+      << "no scan of a rig that waits";
+}
+
+TEST_F(ScanOrdersTest, F32AScanThatIsCompleteIsNotMadeAgainByAGroundThatIsStartedWhileTheRigRests) {
+  SimulateScan(Path("source.mcap"), 2.0);
+  std::optional<Process> ground(Ground());
+  ASSERT_TRUE(ground->WaitForOutput("ready", kPatience)) << ground->output();
+  Process edge(Edge());
+  ASSERT_TRUE(ground->WaitForOutput("scan started", kPatience)) << ground->output();
+  EXPECT_EQ(Scan({"--stop"}).status, 0);
+  EXPECT_TRUE(ground->WaitForOutput("results  /", kPatience)) << ground->output();
+  EXPECT_TRUE(edge.WaitForOutput("waiting for the order to start another", kPatience))
+      << edge.output();
+  ground->Signal(SIGTERM);
+  EXPECT_EQ(ground->WaitForExit(kPatience), 0) << ground->output();
+  const std::string before = Results(Path("ground"));
+  ground.emplace(Ground());
+  ASSERT_TRUE(ground->WaitForOutput("is complete already", kPatience)) << ground->output();
+  EXPECT_EQ(Scan({"--start"}).status, 0);
+  ASSERT_TRUE(ground->WaitForOutput("scan started", kPatience)) << ground->output();
+  EXPECT_EQ(Scan({"--stop"}).status, 0);
+  EXPECT_TRUE(ground->WaitForOutput("results  /", kPatience)) << ground->output();
+  ground->Signal(SIGTERM);
+  EXPECT_EQ(ground->WaitForExit(kPatience), 0) << ground->output();
+  edge.Signal(SIGTERM);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  EXPECT_EQ(Recordings(Path("ground")).size(), 2U) << "one for each scan, each in one file";
+  EXPECT_THAT(Results(Path("ground")), HasSubstr(before)) << "its results are as they were";
 }
 
 }  // namespace

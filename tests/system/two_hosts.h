@@ -100,7 +100,20 @@ class TwoHostsTest : public ::testing::Test {
     return Tc(host, {"filter", "replace", "dev", host.interface, "ingress", "prio", "1", "handle",
                      "1", "bpf", "direct-action", "bytecode", filter});
   }
-  /// Returns how many packets Lose() has lost at `host`.
+  /// Loses what arrives at `host` for several computers at once. Returns false if this kernel
+  /// cannot.
+  static bool LoseMulticast(const Host& host) {
+    constexpr int kEthernetHeader = 14, kDestination = 16;
+    constexpr std::uint32_t kFirstMulticast = 224;  // The first octet of such an address.
+    const std::string filter =
+        "4," + Instruction(BPF_LD | BPF_B | BPF_ABS, 0, kEthernetHeader + kDestination) +
+        Instruction(BPF_JMP | BPF_JGE | BPF_K, 1, kFirstMulticast) +
+        Instruction(BPF_RET | BPF_K, 0, TC_ACT_SHOT) + Instruction(BPF_RET | BPF_K, 0, TC_ACT_OK);
+    Tc(host, {"qdisc", "add", "dev", host.interface, "clsact"});  // Fails if it is there.
+    return Tc(host, {"filter", "replace", "dev", host.interface, "ingress", "protocol", "ip",
+                     "prio", "1", "handle", "1", "bpf", "direct-action", "bytecode", filter});
+  }
+  /// Returns how many packets these have lost at `host`.
   static long Lost(const Host& host) {
     const Finished shown = RunToEnd(
         {kTc, {"-n", host.name, "-s", "qdisc", "show", "dev", host.interface}, {}, {}}, kPatience);
