@@ -43,12 +43,9 @@ std::optional<std::uint32_t> NumberIn(std::string_view name) {
   return number;
 }
 
-/// The place of "scan.mcap", "scan-2.mcap", "scan-late.mcap", "scan-late-2.mcap" among these.
-struct PlaceInScan {
-  bool is_late = false;
-  int part = 1;
-  auto operator<=>(const PlaceInScan&) const = default;
-};
+/// The place of "scan.mcap", "scan-2.mcap", "scan-late.mcap", "scan-late-2.mcap" among these: if it
+/// has what came late, and its part.
+using PlaceInScan = std::pair<bool, int>;
 
 std::optional<PlaceInScan> PlaceOf(const fs::path& file) {
   if (file.extension() != ".mcap") return std::nullopt;
@@ -56,17 +53,17 @@ std::optional<PlaceInScan> PlaceOf(const fs::path& file) {
   std::string_view rest = stem;
   if (!rest.starts_with("scan")) return std::nullopt;
   rest.remove_prefix(std::string_view("scan").size());
-  PlaceInScan place;
+  PlaceInScan place(false, 1);
+  auto& [is_late, part] = place;
   if (constexpr std::string_view kLate = "-late"; rest.starts_with(kLate)) {
-    place.is_late = true;
+    is_late = true;
     rest.remove_prefix(kLate.size());
   }
   if (rest.empty()) return place;
   if (!rest.starts_with('-')) return std::nullopt;
   rest.remove_prefix(1);
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), place.part);
-  if (error != std::errc() || end != rest.data() + rest.size() || place.part < 2)
-    return std::nullopt;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), part);
+  if (error != std::errc() || end != rest.data() + rest.size() || part < 2) return std::nullopt;
   return place;
 }
 
