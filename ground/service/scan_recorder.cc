@@ -73,8 +73,7 @@ Status ScanRecorder::BeginFile() {
   Result<std::unique_ptr<RecordingWriter>> writer = create_(file);
   if (!writer) return writer.error();
   if (files_.empty() && part > 1) {
-    LOG(Ground, Warning) << path_.string()
-                         << " exists already and stays as it is; recording beside it";
+    LOG(Ground, Info) << path_.string() << " exists already; recording beside it";
   }
   writer_ = std::move(*writer);
   part_ = part;
