@@ -30,13 +30,6 @@ std::string NameOf(const RecordedItem& item) {
   return std::visit(Visitor(), item);
 }
 
-/// nullptr for what is no frame.
-const FrameHeader* HeaderOf(const RecordedItem& item) {
-  if (const auto* depth = std::get_if<RecordedDepth>(&item)) return &depth->frame.header;
-  if (const auto* thermal = std::get_if<RecordedThermal>(&item)) return &thermal->frame.header;
-  return nullptr;
-}
-
 Status CheckImage(const RecordedItem& item) {
   const EncodedImage* image = nullptr;
   if (const auto* depth = std::get_if<RecordedDepth>(&item)) image = &depth->frame.image;
@@ -238,6 +231,12 @@ class MergedReader final : public MergedRecording {
 };
 
 }  // namespace
+
+const FrameHeader* HeaderOf(const RecordedItem& item) {
+  if (const auto* depth = std::get_if<RecordedDepth>(&item)) return &depth->frame.header;
+  if (const auto* thermal = std::get_if<RecordedThermal>(&item)) return &thermal->frame.header;
+  return nullptr;
+}
 
 CaptureTime TimeOf(const RecordedItem& item) {
   struct Visitor {

@@ -13,6 +13,9 @@ namespace isotherm {
 /// When an item belongs into the scan: of a frame its capture time, of an event its beginning.
 CaptureTime TimeOf(const RecordedItem& item);
 
+/// Returns the header of a frame; nullptr for what is none.
+const FrameHeader* HeaderOf(const RecordedItem& item);
+
 /// Counts what of a merged recording comes from one of its parts.
 struct MergedPart {
   std::filesystem::path path;

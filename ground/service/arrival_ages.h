@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 
-#include "common/base/enum_array.h"
 #include "common/base/stage_stats.h"
 #include "common/frame/frame.h"
 #include "ground/json/json.h"

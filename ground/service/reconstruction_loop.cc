@@ -121,7 +121,7 @@ void ReconstructionLoop::StepRebuild() {
   // Not progress_: a disk may take longer than a frame.
   reading_.Busy(clock_.SteadyNow());
   const bool goes_on = rebuild_->Step();
-  board_.rebuilt_fraction.Set(rebuild_->progress().fraction());
+  board_.rebuilt_fraction.Set(rebuild_->fraction());
   if (!goes_on) {
     rebuild_.reset();
     board_.rebuilt_fraction.Take();

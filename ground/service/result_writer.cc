@@ -190,11 +190,11 @@ void ResultWriter::Complete(const SessionStart& start, const Json& stats,
     }
     return;
   }
-  LOG(Ground, Info) << (recording.late_frames > 0 ? "frames came late, frames="
-                                                  : "frames were recorded before, files=")
-                    << (recording.late_frames > 0 ? recording.late_frames
-                                                  : recording.earlier_files.size())
-                    << ": the recording and the results are completed";
+  const std::string why =
+      recording.late_frames > 0
+          ? fmt::format("frames came late, frames={}", recording.late_frames)
+          : fmt::format("frames were recorded before, files={}", recording.earlier_files.size());
+  LOG(Ground, Info) << why << ": the recording and the results are completed";
   std::stop_source give_up;
   const std::stop_callback on_stop(stop, [&give_up] { give_up.request_stop(); });
   const auto go_on = [this, &give_up] {

@@ -14,19 +14,6 @@ constexpr int kItemsPerStep = 16;
 /// The rig learns of so many frames at once.
 constexpr std::size_t kNumbersAtOnce = 256;
 
-/// nullptr for what is no frame.
-const FrameHeader* HeaderOf(const RecordedItem& item, Sensor& sensor) {
-  if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
-    sensor = Sensor::kDepth;
-    return &depth->frame.header;
-  }
-  if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
-    sensor = Sensor::kThermal;
-    return &thermal->frame.header;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 ScanRebuild::ScanRebuild(const SessionStart& start, const Clock& clock, Subscriber& subscriber,
@@ -55,8 +42,7 @@ bool ScanRebuild::IsOfSession(const std::filesystem::path& file) const {
     const Result<std::optional<RecordedItem>> item = (*reader)->Next();
     if (!item) continue;  // Said when the model is made.
     if (!*item) return false;
-    Sensor sensor = Sensor::kDepth;
-    const FrameHeader* header = HeaderOf(**item, sensor);
+    const FrameHeader* header = HeaderOf(**item);
     if (header == nullptr) continue;
     if (header->session == session_) return true;
     LOG(Ground, Info) << file.string() << " is of another scan, and stays as it is";
@@ -107,11 +93,12 @@ bool ScanRebuild::Survey() {
       EndFile(frames_in_file_ > 0);
       return true;
     }
-    Sensor sensor = Sensor::kDepth;
-    const FrameHeader* header = HeaderOf(**item, sensor);
+    const FrameHeader* header = HeaderOf(**item);
     if (header == nullptr) continue;
     // Of a file with frames of two scans no recording can be made.
-    if (header->session == session_) Note(sensor, *header);
+    if (header->session != session_) continue;
+    Note(std::holds_alternative<RecordedDepth>(**item) ? Sensor::kDepth : Sensor::kThermal,
+         *header);
   }
   return true;
 }

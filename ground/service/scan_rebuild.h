@@ -19,18 +19,6 @@
 
 namespace isotherm {
 
-/// Says how far a rebuild has come.
-struct RebuildProgress {
-  std::uint64_t recorded_frames = 0;  ///< All that there are, as far as is known.
-  std::uint64_t rebuilt_frames = 0;   ///< In the model.
-
-  double fraction() const {
-    return recorded_frames == 0
-               ? 0.0
-               : static_cast<double>(rebuilt_frames) / static_cast<double>(recorded_frames);
-  }
-};
-
 /// Brings what an earlier process has recorded of a session into this one, a little at a time:
 ///   1. which frames there are, so that the rig does not send them again,
 ///   2. these frames, in the order of time, into the model.
@@ -56,7 +44,12 @@ class ScanRebuild {
   }
   /// The same for a pose: it is recorded, and the next ones are counted from here.
   void CountLeftOut(const ExternalOdometrySample& sample) { scan_->SkipPosesTo(sample.number + 1); }
-  RebuildProgress progress() const { return {recorded_frames_, report_.frames}; }
+  /// Returns the part of what was recorded that is in the model, 0..1.
+  double fraction() const {
+    return recorded_frames_ == 0
+               ? 0.0
+               : static_cast<double>(report_.frames) / static_cast<double>(recorded_frames_);
+  }
 
  private:
   /// Takes the next items of a file, and notes their numbers. Returns false at the last file's end.

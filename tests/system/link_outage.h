@@ -234,6 +234,19 @@ class LinkOutageTest : public TwoHostsTest {
     }
   }
 
+  /// Gives a computer another address.
+  static bool Move(const Host& host, const std::string& address) {
+    return In(host, {"addr", "flush", "dev", host.interface}) &&
+           In(host, {"addr", "add", address + "/24", "dev", host.interface});
+  }
+  /// Both have found each other again: the scan goes on, and in its end nothing is missing.
+  void ExpectToGoOnWithoutLoss() {
+    EXPECT_TRUE(HasMore(GroundFile(), Seconds(1))) << Said();
+    EXPECT_FALSE(edge().HasEnded(Seconds(0))) << "the scan was too short";
+    const Outcome outcome = EndCompleted();
+    ExpectEachFrameAccountedFor(outcome);
+    ExpectNothingIsLost(outcome);
+  }
   /// The results are those that the rig's own recording gives, byte for byte.
   void ExpectResultsOfTheWholeScan() const {
     const std::filesystem::path whole = folder_.path() / "whole";
