@@ -40,40 +40,45 @@ std::string_view Reason(int signal) {
 void Notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_str())); }
 
 /// The same for what is said again and again: it is left out while the service manager does not
-/// read, instead of waiting for it as sd_notify does.
-void NotifyUnlessBusy(const std::string& state) {
+/// read, instead of waiting for it as sd_notify does. Returns false if it was.
+bool NotifyUnlessBusy(const std::string& state) {
   const char* path = std::getenv("NOTIFY_SOCKET");
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  if (path == nullptr) return;
+  if (path == nullptr) return true;
   const std::string_view name(path);
   const bool is_abstract = name.starts_with('@');
   // Another kind of socket is for the library.
-  if (!(is_abstract || name.starts_with('/')) || name.size() >= sizeof(address.sun_path))
-    return Notify(state);
+  if (!(is_abstract || name.starts_with('/')) || name.size() >= sizeof(address.sun_path)) {
+    Notify(state);
+    return true;
+  }
   name.copy(address.sun_path, name.size());
   if (is_abstract) address.sun_path[0] = '\0';
   const int sender = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (sender < 0) return;
+  if (sender < 0) return false;
   const auto size =
       static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size() + (is_abstract ? 0 : 1));
-  // What is left out is said again.
-  static_cast<void>(::sendto(sender, state.data(), state.size(), MSG_NOSIGNAL,
-                             reinterpret_cast<const sockaddr*>(&address), size));
+  const ssize_t sent = ::sendto(sender, state.data(), state.size(), MSG_NOSIGNAL,
+                                reinterpret_cast<const sockaddr*>(&address), size);
   ::close(sender);
+  return sent >= 0;
 }
 
 }  // namespace
 
 void NotifyReady(std::string_view status) { Notify("READY=1\nSTATUS=" + std::string(status)); }
-void NotifyStatus(std::string_view status) { NotifyUnlessBusy("STATUS=" + std::string(status)); }
-void NotifyWaiting(std::string_view reason) {
-  NotifyUnlessBusy("READY=1\nWATCHDOG=1\nSTATUS=" + std::string(reason));
+bool NotifyStatus(std::string_view status) {
+  return NotifyUnlessBusy("STATUS=" + std::string(status));
 }
-void NotifyWatchdog() { NotifyUnlessBusy("WATCHDOG=1"); }
+// What is left out of these is said again.
+void NotifyWaiting(std::string_view reason) {
+  static_cast<void>(NotifyUnlessBusy("READY=1\nWATCHDOG=1\nSTATUS=" + std::string(reason)));
+}
+void NotifyWatchdog() { static_cast<void>(NotifyUnlessBusy("WATCHDOG=1")); }
 void NotifyStopping() { Notify("STOPPING=1"); }
 void NotifyExtendTimeout(std::chrono::microseconds duration) {
-  NotifyUnlessBusy("EXTEND_TIMEOUT_USEC=" + std::to_string(duration.count()));
+  static_cast<void>(NotifyUnlessBusy("EXTEND_TIMEOUT_USEC=" + std::to_string(duration.count())));
 }
 
 std::optional<std::chrono::microseconds> WatchdogInterval() {

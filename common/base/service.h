@@ -14,7 +14,8 @@ namespace isotherm {
 /// does nothing. Ready and stopping are said once, and wait for a manager that is busy; the others
 /// are said again and again, and are left out meanwhile. Thread-safe.
 void NotifyReady(std::string_view status);
-void NotifyStatus(std::string_view status);
+/// Returns false if it was left out: who says it only once says it again then.
+bool NotifyStatus(std::string_view status);
 /// The daemon runs, is alive, and waits for `reason` to pass: ready, with that as its status. To be
 /// called again and again meanwhile.
 void NotifyWaiting(std::string_view reason);

@@ -196,11 +196,11 @@ std::vector<std::string> EdgeMonitor::Problems() const {
 void EdgeMonitor::ReportStatus() {
   std::vector<std::string> problems = Problems();
   // Said when it changes: the service manager shows the last text until then.
-  if (problems == reported_) return;
+  if (problems == reported_ && is_said_) return;
   reported_ = std::move(problems);
   std::string text;
   for (const std::string& problem : reported_) text += (text.empty() ? "" : "; ") + problem;
-  host_.notify_status(text.empty() ? "all is well again" : text);
+  is_said_ = host_.notify_status(text.empty() ? "all is well again" : text);
 }
 
 void EdgeMonitor::Log() {

@@ -25,7 +25,7 @@ namespace isotherm {
 /// that tests play both.
 struct MonitorHost {
   std::function<HostStatus()> read;
-  std::function<void(std::string_view)> notify_status;
+  std::function<bool(std::string_view)> notify_status;
   std::function<void()> notify_alive;
   std::optional<Nanoseconds> watchdog_interval;  ///< Nullopt: nobody watches.
 };
@@ -96,6 +96,7 @@ class EdgeMonitor {
   };
   Newest newest_depth_, newest_thermal_;
   std::vector<std::string> reported_;  ///< Problems, to the service manager.
+  bool is_said_ = true;                ///< They reached it.
   bool stuck_ = false;
   EdgeStatus status_;  ///< The last one published.
   std::uint64_t feedback_shown_ = 0;

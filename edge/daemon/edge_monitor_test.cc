@@ -38,11 +38,14 @@ class EdgeMonitorTest : public ::testing::Test {
   }
 
   EdgeMonitor& Make(std::optional<Nanoseconds> watchdog = kFeed) {
-    const MonitorHost host = {
-        .read = [this] { return host_status_; },
-        .notify_status = [this](std::string_view text) { told_.emplace_back(text); },
-        .notify_alive = [this] { ++fed_; },
-        .watchdog_interval = watchdog};
+    const MonitorHost host = {.read = [this] { return host_status_; },
+                              .notify_status =
+                                  [this](std::string_view text) {
+                                    if (!is_manager_busy_) told_.emplace_back(text);
+                                    return !is_manager_busy_;
+                                  },
+                              .notify_alive = [this] { ++fed_; },
+                              .watchdog_interval = watchdog};
     return monitor_.emplace(EdgeMonitorParts{clock_, pipeline_, publisher_, counters_, health_},
                             image_, host);
   }
@@ -74,7 +77,8 @@ class EdgeMonitorTest : public ::testing::Test {
   const std::filesystem::path image_ = folder_.path() / "confidence.png";
   std::optional<EdgeMonitor> monitor_;
   std::vector<std::string> told_;  ///< To the service manager.
-  int fed_ = 0;                    ///< Its watchdog, this many times.
+  bool is_manager_busy_ = false;
+  int fed_ = 0;  ///< Its watchdog, this many times.
 };
 
 TEST_F(EdgeMonitorTest, TheStatusIsPublishedOnceASecondHoweverOftenItTicks) {
@@ -142,6 +146,17 @@ TEST_F(EdgeMonitorTest, WhileAllIsWellTheServiceManagerIsToldTheRatesEachTenSeco
   Pass(seconds(12), 1);
   ASSERT_EQ(told_.size(), 2U);
   EXPECT_THAT(told_.back(), HasSubstr("20"));
+}
+
+TEST_F(EdgeMonitorTest, WhatABusyServiceManagerDidNotTakeIsSaidAgain) {
+  is_manager_busy_ = true;
+  publisher_.SetProblem("no network");
+  Make().Tick();
+  Pass(seconds(3));
+  EXPECT_THAT(told_, IsEmpty());
+  is_manager_busy_ = false;
+  Pass(seconds(3));
+  EXPECT_THAT(told_, ElementsAre("no network")) << "once";
 }
 
 TEST_F(EdgeMonitorTest, WhatIsWrongIsNotReplacedByTheRates) {

@@ -79,8 +79,10 @@ class Waiting {
         LOG(Edge, Error) << "the library of a camera has not come back from opening it for "
                          << ToSeconds(kMaxAttempt)
                          << " s: the service manager is no longer told that all is well";
-        NotifyStatus("the library of a camera does not come back from opening it");
-        return attempt.wait();
+        do {
+          NotifyStatus("the library of a camera does not come back from opening it");
+        } while (attempt.wait_for(kReportInterval) != std::future_status::ready);
+        return;
       }
       NotifyAlive();
     }

@@ -137,9 +137,9 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
 TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) {
   Mount(64);
   if (IsSkipped()) return;
-  // As soon as the rate is known, the reserve is more than this disk has.
+  // As soon as the rate is known, the reserve is all that this disk has but for 0.1 MB.
   Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_s=86400", "--set",
-                       "spool.expert.reserve_mb=66"}));
+                       "spool.expert.reserve_mb=67"}));
   ASSERT_TRUE(edge.WaitForOutput("the disk is full but for its reserve", kPatience))
       << edge.output();
   const RecordingContent content = ReadRecording(file_);
@@ -156,7 +156,7 @@ TEST_F(SmallDiskTest, F41AScanThatIsToBeRecordedWholeIsStoppedAtTheReserveAndAno
   Mount(64);
   if (IsSkipped()) return;
   Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_s=86400", "--set",
-                       "spool.expert.reserve_mb=66", "--set", "spool.when_full=STOP_SCAN"}));
+                       "spool.expert.reserve_mb=67", "--set", "spool.when_full=STOP_SCAN"}));
   // The manager must be read from meanwhile.
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: the disk is full", kPatience));
   ASSERT_TRUE(edge.WaitForOutput("the scan has ended as ordered", kPatience)) << edge.output();
