@@ -126,16 +126,44 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
 
 Status Writer::Flush() {
   if (!failure_.ok()) return failure_;
-  if (chunk_.records.empty()) return OkStatus();
-  // Kept for the case that the sync fails: what was counted meanwhile is taken back then.
-  Statistics before = statistics_;
-  ISOTHERM_RETURN_IF_ERROR(WriteChunk());
-  if (!options_.sync) return OkStatus();
+  if (!chunk_.records.empty()) {
+    if (const Status written = WriteChunk(); !written.ok()) {
+      SaveUnsynced();
+      return written;
+    }
+    has_unsynced_ = options_.sync;
+  }
+  return has_unsynced_ ? SyncWhenDue() : OkStatus();
+}
+
+Status Writer::SyncWhenDue() {
+  const SteadyTime begin = options_.clock != nullptr ? options_.clock->SteadyNow() : SteadyTime();
+  if (begin < next_sync_) return OkStatus();
   failure_ = sink_->Sync();
   // What was not synced may or may not be on the disk, and trying again would not tell: the kernel
-  // forgets the error. So it does not count as written.
-  if (!failure_.ok()) unsynced_ = std::exchange(statistics_, std::move(before));
-  return failure_;
+  // forgets the error.
+  if (!failure_.ok()) {
+    TakeBackUnsynced();
+    return failure_;
+  }
+  synced_ = statistics_;
+  has_unsynced_ = false;
+  if (options_.clock == nullptr) return OkStatus();
+  const SteadyTime end = options_.clock->SteadyNow();
+  if (end - begin > kQuickSync) next_sync_ = end + std::min(end - begin, kMaxPause);
+  return OkStatus();
+}
+
+void Writer::SaveUnsynced() {
+  if (!has_unsynced_) return;
+  if (!sink_->Sync().ok()) return TakeBackUnsynced();
+  synced_ = statistics_;
+  has_unsynced_ = false;
+}
+
+void Writer::TakeBackUnsynced() {
+  unsynced_ = std::exchange(statistics_, std::move(synced_));
+  has_unsynced_ = false;
 }
 
 Status Writer::WriteChunk() {
@@ -213,11 +241,11 @@ std::uint64_t Writer::unsynced_count(ChannelId channel) const {
 
 Status Writer::Close() {
   if (closed_) return failure_;
-  const Status flushed = Flush();
+  if (failure_.ok() && !chunk_.records.empty() && WriteChunk().ok()) has_unsynced_ = options_.sync;
   // Also after a failure: the sink is closed in any case, and a second call returns what the first
   // did.
   closed_ = true;
-  if (flushed.ok()) {
+  if (failure_.ok()) {
     Bytes end;
     Append(DataEnd{.data_section_crc = data_crc_}, end);
     AppendSummary({.schemas = schemas_,
@@ -226,8 +254,13 @@ Status Writer::Close() {
                    .metadata_indexes = metadata_indexes_,
                    .chunk_indexes = chunk_indexes_},
                   offset_, end);
-    if (WriteBytes(end).ok() && options_.sync) failure_ = sink_->Sync();
+    if (WriteBytes(end).ok() && options_.sync) {
+      failure_ = sink_->Sync();
+      if (!failure_.ok() && has_unsynced_) TakeBackUnsynced();
+      has_unsynced_ = false;
+    }
   }
+  SaveUnsynced();
   const Status closed = sink_->Close();
   if (failure_.ok()) failure_ = closed;
   return failure_;

@@ -8,6 +8,8 @@
 
 #include "common/recording/byte_stream.h"
 #include "common/recording/mcap_records.h"
+#include "common/time/clock.h"
+#include "common/time/time_types.h"
 
 struct ZSTD_CCtx_s;
 
@@ -20,6 +22,10 @@ struct WriterOptions {
   /// A chunk is closed before it would span more log time than this.
   std::uint64_t chunk_duration_ns = 500'000'000;
   bool sync = true;  ///< Sync the sink after each chunk.
+  /// Measures how long a sync takes: one that takes long (kQuickSync) is followed by as much time
+  /// without, kMaxPause at most, in which chunks are written, so that a slow disk keeps up.
+  /// nullptr: each chunk is synced. Must outlive the writer.
+  const Clock* clock = nullptr;
   int zstd_level = 1;
 };
 
@@ -43,7 +49,7 @@ class Writer {
   Status WriteMessage(ChannelId channel, std::uint64_t log_time, std::uint64_t publish_time,
                       std::span<const std::uint8_t> data);
   Status WriteMetadata(const Metadata& metadata);
-  /// Closes the current chunk and hands it to the sink.
+  /// Closes the current chunk, hands it to the sink, and syncs that if it is due.
   Status Flush();
   /// Idempotent: the second call returns what the first did.
   Status Close();
@@ -59,6 +65,10 @@ class Writer {
   /// A raw frame of 4096 x 4096 pixels of 16 bit fits; a message that is larger would make a chunk
   /// that readers refuse (kMaxChunkBytes).
   static constexpr std::size_t kMaxMessageBytes = 36U << 20;
+  /// A disk that takes no longer has time enough between two chunks of half a second.
+  static constexpr Nanoseconds kQuickSync = std::chrono::milliseconds(100);
+  /// A disk that has stood still once is soon asked again. Not tuned.
+  static constexpr Nanoseconds kMaxPause = std::chrono::seconds(5);
 
  private:
   /// Frees a compressor.
@@ -78,6 +88,11 @@ class Writer {
 
   MessageIndex& IndexFor(ChannelId channel);
   Status WriteChunk();
+  Status SyncWhenDue();
+  /// After a write that failed: syncs the chunks before it, once.
+  void SaveUnsynced();
+  /// Chunks that were not synced do not count as written.
+  void TakeBackUnsynced();
   /// Writes the indexes of the chunk that was just written; completes `index` and empties the
   /// chunk.
   Status WriteMessageIndexes(ChunkIndex& index);
@@ -96,7 +111,10 @@ class Writer {
   Bytes compressed_;
   Bytes out_;
 
-  Statistics statistics_;               ///< They count what is in the file.
+  Statistics statistics_;      ///< They count what is in the file.
+  Statistics synced_;          ///< The same as of the last sync.
+  bool has_unsynced_ = false;  ///< There are chunks since.
+  SteadyTime next_sync_{};
   std::optional<Statistics> unsynced_;  ///< As they would be if the last sync had not failed.
   std::vector<ChunkIndex> chunk_indexes_;
   std::vector<MetadataIndex> metadata_indexes_;

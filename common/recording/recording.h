@@ -15,6 +15,7 @@
 #include "common/geometry/external_odometry.h"
 #include "common/geometry/stamped_pose.h"
 #include "common/rig/rig.h"
+#include "common/time/clock.h"
 
 namespace isotherm {
 
@@ -44,7 +45,12 @@ struct RecordingOptions {
   std::size_t chunk_bytes = 4U << 20;  ///< A chunk is closed when it holds this much.
   Nanoseconds flush_interval =
       std::chrono::milliseconds(500);  ///< A chunk is closed at this age (capture time), <= 1 s.
-  bool sync = true;  ///< fdatasync after each chunk, so that a power cut costs at most the last.
+  /// fdatasync after each chunk, so that a power cut costs at most the last; less often while the
+  /// disk is slow in that.
+  bool sync = true;
+  /// Measures how slow (mcap::WriterOptions); nullptr: after each chunk, however slow. Must outlive
+  /// the writer.
+  const Clock* clock = nullptr;
 };
 
 /// Counters: written + failed = offered.

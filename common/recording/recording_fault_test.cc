@@ -111,6 +111,92 @@ TEST(RecordingFaultTest, F43WhatWasNotSyncedIsNotCountedAsRecordedAndSyncIsNotTr
   EXPECT_EQ(UnsyncedSink::writes_after_failure, writes);
 }
 
+/// A disk in memory of which each sync takes the same time, until it fails.
+class SlowSink final : public ByteSink {
+ public:
+  struct Disk {
+    FakeClock clock;
+    Nanoseconds sync_time{};
+    bool sync_fails = false;
+    int syncs = 0;
+  };
+  explicit SlowSink(Disk& disk) : disk_(disk) {}
+  Status Write(std::span<const std::uint8_t> /*bytes*/) override { return OkStatus(); }
+  Status Sync() override {
+    disk_.clock.Advance(disk_.sync_time);
+    ++disk_.syncs;
+    return disk_.sync_fails ? IoError("input/output error") : OkStatus();
+  }
+  Status Close() override { return OkStatus(); }
+
+ private:
+  Disk& disk_;
+};
+
+TEST(RecordingFaultTest, F42ADiskThatSyncsSlowlyGetsAsMuchTimeWithout) {
+  for (const auto& [sync_time, syncs] : {std::pair(50ms, 40), std::pair(1000ms, 9)}) {
+    SlowSink::Disk disk;
+    disk.sync_time = sync_time;
+    RecordingOptions options = kSmallChunks;
+    options.clock = &disk.clock;
+    auto writer = MakeRecordingWriter(std::make_unique<SlowSink>(disk), options);
+    ASSERT_TRUE(writer.has_value());
+    // Twenty seconds in which the disk is written to at the frames' rate, but for its syncs.
+    const SteadyTime begin = disk.clock.SteadyNow();
+    for (std::uint64_t i = 0; disk.clock.SteadyNow() < begin + 20s; ++i) {
+      ASSERT_TRUE((*writer)->Write(MakeDepth(i, kScanStart), std::nullopt).ok());
+      ASSERT_TRUE((*writer)->Flush().ok());
+      disk.clock.Advance(450ms);
+    }
+    // A second for the sync, and three chunks until the next one.
+    EXPECT_NEAR(disk.syncs, syncs, 1);
+    const int before_close = disk.syncs;
+    ASSERT_TRUE((*writer)->Close().ok());
+    EXPECT_GT(disk.syncs, before_close) << "in the end all is safe";
+  }
+}
+
+TEST(RecordingFaultTest, F43ChunksThatWaitedForTheirSyncCountAsUnsyncedWhenItFails) {
+  SlowSink::Disk disk;
+  disk.sync_time = 1s;
+  RecordingOptions options = kSmallChunks;
+  options.clock = &disk.clock;
+  auto writer = MakeRecordingWriter(std::make_unique<SlowSink>(disk), options);
+  ASSERT_TRUE(writer.has_value());
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    ASSERT_TRUE((*writer)->Write(MakeDepth(i, kScanStart), std::nullopt).ok());
+    ASSERT_TRUE((*writer)->Flush().ok());
+  }
+  EXPECT_EQ(disk.syncs, 1);
+  EXPECT_EQ((*writer)->stats().depth_frames, 3U);
+  disk.sync_fails = true;
+  ASSERT_TRUE((*writer)->Flush().ok()) << "not yet";
+  disk.clock.Advance(1s);
+  EXPECT_EQ((*writer)->Flush().code(), StatusCode::kIoError) << "without a new frame, too";
+  EXPECT_EQ((*writer)->stats().depth_frames, 1U);
+  EXPECT_EQ((*writer)->stats().failed, 2U);
+  EXPECT_EQ((*writer)->stats().unsynced, 2U);
+}
+
+TEST(RecordingFaultTest, F43ASyncThatFailsAtTheEndIsCountedToo) {
+  SlowSink::Disk disk;
+  disk.sync_time = 1s;
+  RecordingOptions options = kSmallChunks;
+  options.clock = &disk.clock;
+  auto writer = MakeRecordingWriter(std::make_unique<SlowSink>(disk), options);
+  ASSERT_TRUE(writer.has_value());
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    ASSERT_TRUE((*writer)->Write(MakeDepth(i, kScanStart), std::nullopt).ok());
+    if (i < 2) {
+      ASSERT_TRUE((*writer)->Flush().ok());
+    }
+  }
+  disk.sync_fails = true;
+  EXPECT_EQ((*writer)->Close().code(), StatusCode::kIoError);
+  EXPECT_EQ((*writer)->stats().depth_frames, 1U);
+  EXPECT_EQ((*writer)->stats().unsynced, 2U);
+}
+
 TEST(RecordingFaultTest, FullDiskFailsEveryFurtherCall) {
   const auto disk = std::make_shared<MemorySink::Disk>();
   auto writer = WriterTo(disk, kSmallChunks);

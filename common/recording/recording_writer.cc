@@ -269,7 +269,8 @@ Result<std::unique_ptr<RecordingWriter>> MakeRecordingWriter(std::unique_ptr<Byt
       {.library = "isotherm " ISOTHERM_VERSION,
        .chunk_bytes = options.chunk_bytes,
        .chunk_duration_ns = static_cast<std::uint64_t>(options.flush_interval.count()),
-       .sync = options.sync});
+       .sync = options.sync,
+       .clock = options.clock});
   if (!writer) return Err(std::move(writer.error()));
   const mcap::Metadata version{.name = std::string(kRecordingMetadataName),
                                .values = {{"version", fmt::format("{}.{}", kRecordingMajorVersion,

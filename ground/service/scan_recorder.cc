@@ -21,8 +21,9 @@ namespace {
 // have reached the disk by then.
 constexpr Nanoseconds kProven = std::chrono::seconds(3);
 
-ScanRecorder::CreateWriter OnDisk(const GroundOptions& options) {
+ScanRecorder::CreateWriter OnDisk(const GroundOptions& options, const Clock& clock) {
   RecordingOptions recording;
+  recording.clock = &clock;
   recording.image_storage =
       options.live().expert().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
   return [recording](const std::filesystem::path& path) {
@@ -46,7 +47,7 @@ void AddCamera(const std::string& name, const StreamMode& camera,
 
 ScanRecorder::ScanRecorder(const std::filesystem::path& path, const GroundOptions& options,
                            const RigDescription& rig, const Clock& clock)
-    : ScanRecorder(path, options, rig, clock, OnDisk(options)) {}
+    : ScanRecorder(path, options, rig, clock, OnDisk(options, clock)) {}
 
 ScanRecorder::ScanRecorder(const std::filesystem::path& path, const GroundOptions& options,
                            const RigDescription& rig, const Clock& clock, CreateWriter create)

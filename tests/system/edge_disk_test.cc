@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/system/edge_failure.h"
@@ -88,6 +89,79 @@ TEST_P(F43SyncErrorTest, TheFileIsLeftANewOneBegunAndEachFrameIsAccountedFor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, F43SyncErrorTest, ::testing::Values(EIO, EROFS, ENOSPC));
+
+TEST_F(EdgeFailureTest, F43ADiskThatIsTakenAwayAndComesBackGetsTheNextFile) {
+  const std::filesystem::path away = folder_.path() / "away";
+  Command command = Replay({"--record", file_});
+  command.environment.push_back("LD_PRELOAD=" FAILING_DISK);
+  command.environment.push_back("FAILING_DISK=" + away.string());
+  command.environment.push_back("FAILING_DISK_FOLDER=" + disk_.string());
+  Process edge(command);
+  ASSERT_TRUE(WaitForSize(edge, file_, 50'000)) << edge.output();
+  const std::filesystem::path next = away.string() + ".next";
+  std::ofstream(next) << ENODEV;
+  std::filesystem::rename(next, away);
+  ASSERT_TRUE(edge.WaitForOutput("recording ended early", kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: cannot create", kPatience))
+      << edge.output();
+  std::filesystem::remove(away);
+  ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
+  ExpectToLeave(edge, 73);
+  const FrameCountersText recorded = CountersOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(recorded.Closes()) << edge.output();
+  EXPECT_GT(recorded.failed, 0);
+  const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
+  EXPECT_EQ(published.done, published.captured) << "the link does not need the disk";
+  const auto files = FilesIn(disk_);
+  ASSERT_EQ(files.size(), 2U);
+  long found = 0;
+  for (const auto& file : files) found += static_cast<long>(ReadRecording(file).depth.size());
+  EXPECT_GE(found, recorded.done);
+  EXPECT_LE(found, recorded.done + recorded.failed);
+}
+
+/// A disk of which each sync takes a second, twice the time in which a chunk is captured.
+class F42SlowDiskTest : public EdgeFailureTest {
+ protected:
+  /// Records until `bytes` more are there, ends the edge, and returns what it said. The file has
+  /// what is counted as recorded.
+  std::string Record(std::vector<std::string> more, std::uintmax_t bytes) {
+    const std::filesystem::path slow = folder_.path() / "slow";
+    more.insert(more.end(), {"--record", file_});
+    Command command = Replay(std::move(more));
+    command.environment.insert(command.environment.end(),
+                               {"LD_PRELOAD=" STUCK_DISK, "STUCK_DISK_WHILE=" + slow.string(),
+                                "STUCK_DISK_NAME=copy.mcap"});
+    Process edge(command);
+    EXPECT_TRUE(WaitForSize(edge, file_, 20'000)) << edge.output();
+    const std::filesystem::path next = slow.string() + ".next";
+    std::ofstream(next) << 1000;
+    std::filesystem::rename(next, slow);
+    EXPECT_TRUE(WaitForSize(edge, file_, std::filesystem::file_size(file_) + bytes))
+        << edge.output();
+    ExpectToLeave(edge, 0, kTimeToLeave + kForTheDisk);
+    const FrameCountersText recorded = CountersOf(edge.output(), Sensor::kDepth, "recorded");
+    EXPECT_TRUE(recorded.Closes()) << edge.output();
+    const RecordingContent content = ReadRecording(file_);
+    EXPECT_TRUE(content.complete);
+    EXPECT_EQ(static_cast<long>(content.depth.size()), recorded.done);
+    return edge.output();
+  }
+};
+
+TEST_F(F42SlowDiskTest, ItLosesNothing) {
+  const std::string output = Record({}, 250'000);
+  const FrameCountersText recorded = CountersOf(output, Sensor::kDepth, "recorded");
+  EXPECT_EQ(recorded.done, recorded.captured) << output;
+}
+
+TEST_F(F42SlowDiskTest, WhatFindsNoRoomBeforeItIsCountedAndPublished) {
+  // A third of a second may wait.
+  const std::string output = Record({"--set", "spool.expert.queue_frames=20"}, 100'000);
+  EXPECT_GT(CountersOf(output, Sensor::kDepth, "recorded").queue_full, 0) << output;
+  const FrameCountersText published = CountersOf(output, Sensor::kDepth, "published");
+  EXPECT_EQ(published.done, published.captured) << output;
+}
 
 /// A file system of its own, which takes root.
 class SmallDiskTest : public EdgeFailureTest {

@@ -1,15 +1,21 @@
 // Preloaded into a program, lets its disk fail: while the file FAILING_DISK exists, every fdatasync
-// fails with the error number that the file holds, as a disk's file system does after an error.
+// fails with the error number that the file holds, as a disk's file system does after an error. If
+// FAILING_DISK_FOLDER is set, nothing below that can be opened for writing either, as if the disk
+// had been taken away.
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 namespace {
 
 using Function = int (*)(int);
+using Open = int (*)(const char*, int, ...);
 
 /// 0 = the disk works.
 int ErrorNow() {
@@ -22,6 +28,22 @@ int ErrorNow() {
   return error;
 }
 
+int OpenUnlessAway(const char* function, const char* path, int flags, mode_t mode) {
+  const auto real = reinterpret_cast<Open>(dlsym(RTLD_NEXT, function));
+  static const char* const folder = std::getenv("FAILING_DISK_FOLDER");
+  const bool is_meant = folder != nullptr && (flags & O_ACCMODE) != O_RDONLY &&
+                        std::string_view(path).substr(0, std::string_view(folder).size()) == folder;
+  if (const int error = is_meant ? ErrorNow() : 0; error != 0) {
+    errno = error;
+    return -1;
+  }
+  return real(path, flags, mode);
+}
+
+mode_t ModeOf(int flags, va_list arguments) {
+  return (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
+}
+
 }  // namespace
 
 extern "C" int fdatasync(int descriptor) {
@@ -31,4 +53,20 @@ extern "C" int fdatasync(int descriptor) {
     return -1;
   }
   return real(descriptor);
+}
+
+// Both are the same function; which one a program calls depends on how it was compiled.
+extern "C" int open(const char* path, int flags, ...) {
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = ModeOf(flags, arguments);
+  va_end(arguments);
+  return OpenUnlessAway("open", path, flags, mode);
+}
+extern "C" int open64(const char* path, int flags, ...) {
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = ModeOf(flags, arguments);
+  va_end(arguments);
+  return OpenUnlessAway("open64", path, flags, mode);
 }

@@ -87,6 +87,36 @@ TEST_P(F43GroundDiskTest, AfterAWriteErrorASecondFileIsBegunAndEachFrameIsAccoun
 
 INSTANTIATE_TEST_SUITE_P(Errors, F43GroundDiskTest, ::testing::Values(EIO, EROFS, ENOSPC));
 
+TEST_F(GroundDiskTest, F43ADiskThatIsTakenAwayAndComesBackGetsTheNextFile) {
+  const std::filesystem::path away = Path("away");
+  Command command = Ground({"--once"});
+  command.environment = {"LD_PRELOAD=" FAILING_DISK, "FAILING_DISK=" + away.string(),
+                         "FAILING_DISK_FOLDER=" + Path("ground").string()};
+  Process ground(command);
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  Process edge(Edge(0, "1"));
+  ASSERT_TRUE(WaitForSize(Path("ground/scan.mcap"), 200'000)) << edge.output() << ground.output();
+  const std::filesystem::path next = away.string() + ".next";
+  std::ofstream(next) << ENODEV;
+  std::filesystem::rename(next, away);
+  ASSERT_TRUE(ground.WaitForOutput("the recording stops here", kPatience)) << ground.output();
+  ASSERT_TRUE(ground.WaitForOutput("NOT RECORDING", kPatience)) << ground.output();
+  EXPECT_FALSE(std::filesystem::exists(Path("ground/scan-2.mcap")));
+  std::filesystem::remove(away);
+  ASSERT_TRUE(ground.WaitForOutput("the disk works again", kPatience)) << ground.output();
+  edge.Signal(SIGTERM);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  EXPECT_EQ(ground.WaitForExit(kPatience), kDiskStuck) << ground.output();
+  const auto stats = ReadStats(Path("ground"));
+  ExpectEachFrameAccountedFor(stats, "depth");
+  ExpectEachFrameAccountedFor(stats, "thermal");
+  EXPECT_EQ(NumberAt(stats, {"link", "depth", "received"}),
+            NumberAt(stats, {"link", "depth", "published"}))
+      << "the link goes on without the disk";
+  EXPECT_TRUE(std::filesystem::exists(Path("ground/scan-2.mcap")));
+  if (HasFailure()) std::cout << "edge:\n" << edge.output() << "ground:\n" << ground.output();
+}
+
 /// A ground for one scan with a small file system as its output folder, whose content is in
 /// Path("kept") afterwards.
 class SmallDiskTest : public GroundDiskTest {
