@@ -78,6 +78,8 @@ class FrameSequencer {
   /// All numbers below are delivered or given up.
   std::uint64_t handled() const { return handled_; }
   const FrameNumberSet& receipts() const { return receipts_; }
+  /// Returns how many frames wait.
+  std::size_t waiting() const { return waiting_.size(); }
 
  private:
   /// Holds a frame that came before an earlier one.

@@ -61,6 +61,8 @@ class StreamReceiver {
 
   /// Returns when the first missing frame is given up; nullopt if no frame waits for one.
   std::optional<SteadyTime> deadline() const { return sequencer_->deadline(); }
+  /// Returns how many frames are kept until others before them have come, or have confirmed them.
+  std::size_t held() const { return sequencer_->waiting() + pending_.size(); }
   /// The tally of `session`, as far as it is remembered (the current one and the one before).
   StreamTally tally(std::uint64_t session) const;
   /// Returns what the edge is told of `session`; nothing but for the current one.

@@ -56,6 +56,7 @@ class LossyWay {
       const auto jitter = FromSeconds(draw() * 2.0 * ToSeconds(delay));
       under_way_.push_back({now + jitter, message});
     } while (draw() < doubled);
+    most_under_way_ = std::max(most_under_way_, under_way_.size());
   }
   std::vector<Message> Arrived(SteadyTime now) {
     std::vector<Message> arrived;
@@ -66,6 +67,9 @@ class LossyWay {
     });
     return arrived;
   }
+
+  /// Returns how many messages were under way at once at most.
+  std::size_t most_under_way() const { return most_under_way_; }
 
   bool carries = true;
   double loss = 0.0;
@@ -78,6 +82,7 @@ class LossyWay {
     Message message;
   };
   std::vector<UnderWay> under_way_;
+  std::size_t most_under_way_ = 0;
 };
 
 /// The ground's process: it puts frames in order, records them, and tells what it has.
@@ -110,8 +115,11 @@ class GroundEnd {
       depth_.Add(EncodedDepthFrame(*depth), arrival, now);
     if (const auto* thermal = std::get_if<EncodedThermalFrame>(&frame))
       thermal_.Add(EncodedThermalFrame(*thermal), arrival, now);
+    most_held_ = std::max(most_held_, depth_.held() + thermal_.held());
     ++since_receipt_;
   }
+  /// Returns how many frames waited for others before them at most.
+  std::size_t most_held() const { return most_held_; }
   /// Returns a receipt when one is due.
   std::optional<Receipt> Step(std::uint64_t session) {
     const SteadyTime now = clock_.SteadyNow();
@@ -176,6 +184,7 @@ class GroundEnd {
                                            Into<ReceivedThermal>(Sensor::kThermal, &Used::late)};
   SteadyTime next_receipt_{};
   int since_receipt_ = 0;
+  std::size_t most_held_ = 0;
 };
 
 /// The edge's end of the link as the daemon keeps it, without the middleware.

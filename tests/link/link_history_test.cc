@@ -315,6 +315,11 @@ class History {
       EXPECT_GE(sent.published, got.size()) << "the ground has what was not published";
       frames += captured.size();
     }
+    // What is sent again, and what is live for as long as a packet may take.
+    // An edge that is started at once may send while packets of the one before are under way.
+    constexpr std::size_t kMaxAtOnce = 2 * kMaxFlowWindowFrames + 16;
+    EXPECT_LE(way_.most_under_way(), kMaxAtOnce) << "in the network at once";
+    EXPECT_LE(ground_->most_held(), kMaxAtOnce) << "waiting for others";
     // A receipt may be older than what is under way: some frames come twice, never many.
     EXPECT_LE(account_.sent_again, (2 + grounds_ + edges_) * frames);
   }
