@@ -62,6 +62,13 @@ Link Narrow(const std::string& policy, double mbit_s) {
           true};
 }
 
+/// Returns the same link without a delay.
+Link Near(Link link) {
+  link.label += ", near";
+  link.to_ground.delay = link.to_edge.delay = 0ns;
+  return link;
+}
+
 /// Returns the same link for frames that go whole.
 Link Whole(Link link) {
   link.label += ", whole frames";
@@ -73,7 +80,9 @@ std::vector<Link> Links() {
   std::vector<Link> links;
   for (const std::string policy : {kLossless, kLive}) {
     links.push_back({policy, "no delay", {}, {}});
-    for (const double loss : {0.0, 0.01, kFarLoss, 0.20, 0.30})
+    for (const double loss : {0.01, kFarLoss, 0.10, 0.20})
+      links.push_back(Near(Lossy(policy, loss)));
+    for (const double loss : {0.0, 0.01, kFarLoss, 0.10, 0.20, 0.30})
       links.push_back(Lossy(policy, loss));
     links.push_back(Lossy(policy, kFarLoss, 200ms));
     for (const double mbit_s : {24.0, kNarrow_mbit_s, kVeryNarrow_mbit_s}) {
