@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <string>
 
@@ -32,16 +30,11 @@ inline std::uint64_t LeftForLater(const EdgeStatus& status) {
   return frames;
 }
 
-/// "640 frames of 9 s (link too narrow)": what the ground lacks, and how much of the scan that is,
-/// while both cameras deliver.
-inline std::string BacklogText(const EdgeStatus& status) {
-  const double depth_hz = status.depth.rate_hz, thermal_hz = status.thermal.rate_hz;
-  const bool is_known =
-      status.scan_state == ScanState::kScanning && depth_hz > 0.0 && thermal_hz > 0.0;
-  const double seconds = static_cast<double>(status.spool_frames) / (depth_hz + thermal_hz);
-  return fmt::format("{} frames{}{}", status.spool_frames,
-                     is_known ? fmt::format(" of {:.0f} s", seconds) : "",
-                     LeftForLater(status) > 0 ? " (link too narrow)" : "");
-}
+/// "640 frames of 9 s, 42 MB (link too narrow)": what the ground lacks, and how much of the scan
+/// that is, while both cameras deliver.
+std::string BacklogText(const EdgeStatus& status);
+
+/// Says how the link to a rig that is heard is, by its newest status.
+std::string LinkText(const EdgeStatus& status);
 
 }  // namespace isotherm

@@ -231,6 +231,11 @@ struct EdgeStatus {
   std::vector<ScanMark> marks{};  ///< The newest kMaxMarks of this session.
   /// Process (PeerHandle) of the ground station whose receipts count; 0: none yet.
   std::uint64_t served_ground = 0;
+  std::uint64_t spool_bytes = 0;  ///< About the size of spool_frames.
+  /// Frames that the recording has deleted, to keep the newest, before the ground had them.
+  std::uint64_t frames_gone = 0;
+  /// The recording keeps so much of the scan, seconds; 0: all of it, NaN: it is not known yet.
+  double spool_keeps_s = 0.0;
 };
 
 /// Names what the ground can order.
@@ -373,6 +378,7 @@ struct Feedback {
   double next_gain_m2 = 0.0;  ///< Surface that the next view would measure well for the first time.
   /// Thermal frames of this scan that the ground left out to keep up. Its recording has them.
   std::uint32_t frames_left_out = 0;
+  std::string link{};  ///< How the link is, in words; at most kMaxTextBytes.
 };
 
 }  // namespace isotherm

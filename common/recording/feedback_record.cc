@@ -42,6 +42,7 @@ recording::FeedbackRecord ToRecord(const Feedback& feedback,
   if (feedback.T_depth_next) SetPose(*feedback.T_depth_next, *record.mutable_depth_from_next());
   record.set_next_gain_m2(feedback.next_gain_m2);
   record.set_frames_left_out(feedback.frames_left_out);
+  record.set_link(feedback.link);
   return record;
 }
 

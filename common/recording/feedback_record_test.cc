@@ -54,6 +54,7 @@ TEST_F(FeedbackRecordTest, SaysWhatTheGroundSaid) {
   feedback_.view.good = 0.5F;
   feedback_.advice = {Advice::kSlower, Advice::kMoveCloser};
   feedback_.advice_reason = "0.50 m/s";
+  feedback_.link = "link good";
   feedback_.T_depth_next = MakeTransform({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
   ASSERT_TRUE(WriteFeedback(feedback_, kScanStart + 70ms, *writer_).ok());
   const auto records = Messages<recording::FeedbackRecord>("/feedback");
@@ -68,6 +69,7 @@ TEST_F(FeedbackRecordTest, SaysWhatTheGroundSaid) {
   ASSERT_EQ(record.advice_size(), 2);
   EXPECT_EQ(record.advice(0), "slower");
   EXPECT_EQ(record.reason(), "0.50 m/s");
+  EXPECT_EQ(record.link(), "link good");
   EXPECT_EQ(record.depth_from_next().translation().y(), 2.0);
   EXPECT_FALSE(record.has_world_from_next());
 }

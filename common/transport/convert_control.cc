@@ -195,6 +195,7 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
   if (from.T_depth_next) to->t_depth_next = ToWirePose(*from.T_depth_next);
   to->next_gain_m2 = from.next_gain_m2;
   to->frames_left_out = from.frames_left_out;
+  CopyText(from.link, to->link);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to) {
@@ -217,6 +218,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->done = from.done;
   to->next_gain_m2 = from.next_gain_m2;
   to->frames_left_out = from.frames_left_out;
+  to->link = ReadText(from.link);
   return CheckFeedback(*to);
 }
 

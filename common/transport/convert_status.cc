@@ -187,6 +187,9 @@ void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
   ToWireCamera(from.thermal_camera, &to->thermal_camera);
   ToWireMarks(from, to);
   to->served_ground = from.served_ground;
+  to->spool_bytes = from.spool_bytes;
+  to->frames_gone = from.frames_gone;
+  to->spool_keeps_s = from.spool_keeps_s;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
@@ -197,7 +200,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (const auto cause = FromWireNuc(from, &to->nuc)) return cause;
   if (const auto cause = FromWireClock(from, to)) return cause;
   const auto infinite =
-      CheckFiniteOrUnknown({from.spool_fill_ratio, from.cpu_temperature_celsius,
+      CheckFiniteOrUnknown({from.spool_fill_ratio, from.spool_keeps_s, from.cpu_temperature_celsius,
                             from.feedback_latency_p50_s, from.feedback_latency_p99_s});
   if (infinite) return infinite;
   if (const auto cause = FromWireStream(from.depth, &to->depth)) return cause;
@@ -207,6 +210,9 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (const auto cause = FromWireMarks(from, to)) return cause;
   to->session = from.session;
   to->served_ground = from.served_ground;
+  to->spool_bytes = from.spool_bytes;
+  to->frames_gone = from.frames_gone;
+  to->spool_keeps_s = from.spool_keeps_s;
   to->time = CaptureTimeFromNanoseconds(from.time_ns);
   to->scan_state = static_cast<ScanState>(from.scan_state);
   to->publish_policy = static_cast<PublishPolicy>(from.publish_policy);

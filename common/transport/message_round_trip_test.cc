@@ -214,6 +214,9 @@ TEST_F(MessageRoundTripTest, StatusArrivesWithItsDropReasons) {
   for (std::int64_t i = 0; i < 10; ++i)
     sent.marks.push_back({CaptureTimeFromNanoseconds(i), fmt::format("place {}", i)});
   sent.served_ground = 0xFEDCBA9876543210;
+  sent.spool_bytes = 42'000'000;
+  sent.frames_gone = 17;
+  sent.spool_keeps_s = 12.5;
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const EdgeStatus& status = received->message;
@@ -245,6 +248,9 @@ TEST_F(MessageRoundTripTest, StatusArrivesWithItsDropReasons) {
   EXPECT_EQ(status.nuc.housing_celsius, 31.5);
   EXPECT_EQ(status.nuc.reason, "drift");
   EXPECT_EQ(status.served_ground, sent.served_ground);
+  EXPECT_EQ(status.spool_bytes, sent.spool_bytes);
+  EXPECT_EQ(status.frames_gone, sent.frames_gone);
+  EXPECT_EQ(status.spool_keeps_s, sent.spool_keeps_s);
   ASSERT_EQ(status.marks.size(), kMaxMarks);
   EXPECT_EQ(status.marks.front(), sent.marks[2]) << "the oldest were sent before";
   EXPECT_EQ(status.marks.back(), sent.marks[9]);
@@ -303,6 +309,7 @@ TEST_F(MessageRoundTripTest, FeedbackArrivesAsItWasWritten) {
   }
   sent.advice_reason = "0.45 m/s, the model follows up to 0.30 m/s";
   sent.frames_left_out = 764;
+  sent.link = "to come from the rig's recording: 640 frames";
   sent.done = true;
   sent.T_depth_next = MakeTransform({0.1, 0, 0.2}, Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5));
   sent.next_gain_m2 = 0.25;
@@ -325,6 +332,7 @@ TEST_F(MessageRoundTripTest, FeedbackArrivesAsItWasWritten) {
   EXPECT_FALSE(without->message.pose_covariance.has_value());
   EXPECT_EQ(feedback.advice_reason, sent.advice_reason);
   EXPECT_EQ(feedback.frames_left_out, sent.frames_left_out);
+  EXPECT_EQ(feedback.link, sent.link);
   EXPECT_TRUE(feedback.done);
   ASSERT_TRUE(feedback.T_depth_next.has_value());
   EXPECT_TRUE(feedback.T_depth_next->isApprox(*sent.T_depth_next, 1e-12));

@@ -195,7 +195,8 @@ bool IsSound(const Feedback& feedback) {
   return IsOneOf(feedback.tracking_state, 4) && feedback.advice.size() <= 8 &&
          std::ranges::all_of(feedback.advice, [](Advice a) { return IsOneOf(a, 8); }) &&
          feedback.image.size() <= 20'000 && feedback.latencies.size() <= 16 &&
-         std::isfinite(feedback.covered_area_m2) && IsShort(feedback.advice_reason, 256);
+         std::isfinite(feedback.covered_area_m2) && IsShort(feedback.advice_reason, 256) &&
+         IsShort(feedback.link, 256);
 }
 bool IsSound(const Hello& hello) {
   return IsOneOf(hello.role, 2) && IsShort(hello.host, 256) && IsShort(hello.software_version, 256);

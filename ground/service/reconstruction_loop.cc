@@ -168,6 +168,8 @@ void ReconstructionLoop::SendFeedback(const Feedback& feedback) {
   board_.behind.Set(behind);
   Feedback sent = feedback;
   sent.frames_left_out = static_cast<std::uint32_t>(behind.thermal_frames);
+  const std::optional<EdgeStatus> edge = board_.edge.Get();
+  if (edge && subscriber_.stats().edge_present) sent.link = LinkText(*edge);
   if (const Status status = subscriber_.Publish(sent); !status.ok()) {
     LOG(Ground, Debug) << "feedback not sent: " << status.message();
   }

@@ -76,21 +76,21 @@ std::vector<std::string> TroublesOf(const GroundSituation& situation) {
 
 /// "RIG LOST for 12 s, it records: nothing is lost".
 std::string LostText(const GroundSituation& situation) {
-  const bool records = situation.edge && std::isfinite(situation.edge->spool_fill_ratio);
-  return fmt::format("RIG LOST for {:.0f} s, {}", ToSeconds(situation.rig_lost_for),
-                     records ? "it records: nothing is lost" : "and it does not record");
-}
-
-/// Says how the link to a rig that is there is.
-std::string LinkText(const GroundSituation& situation) {
-  if (!situation.edge || !HasBacklog(*situation.edge)) return "link good";
-  return "to come from the rig's recording: " + BacklogText(*situation.edge);
+  std::string recorded = "and it does not record";
+  if (situation.edge && std::isfinite(situation.edge->spool_fill_ratio)) {
+    const double keeps_s = situation.edge->spool_keeps_s;
+    recorded = "it records: nothing is lost";
+    if (keeps_s > 0.0) recorded = fmt::format("it keeps the newest {:.0f} s", keeps_s);
+    if (std::isnan(keeps_s)) recorded = "it keeps the newest only";
+  }
+  return fmt::format("RIG LOST for {:.0f} s, {}", ToSeconds(situation.rig_lost_for), recorded);
 }
 
 /// Adds what has arrived of the scan, and where it stays.
 void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) {
   const SessionCounters& counters = situation.link.counters;
-  if (situation.link.edge_present && !counters.closed) parts.push_back(LinkText(situation));
+  if (situation.link.edge_present && !counters.closed && situation.edge)
+    parts.push_back(LinkText(*situation.edge));
   parts.push_back(fmt::format("received {}, {}", ArrivedText("depth", counters.depth),
                               ArrivedText("thermal", counters.thermal)));
   if (situation.edge) {

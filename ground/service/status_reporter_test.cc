@@ -161,10 +161,18 @@ TEST(StatusReporterTest, F25WhatIsStillToComeIsSaid) {
   situation.edge->depth.rate_hz = 29.5;
   situation.edge->thermal.rate_hz = 39.9;
   EXPECT_THAT(StatusText(situation), HasSubstr("recording: 1180 frames of 17 s |"));
+  situation.edge->spool_bytes = 96'400'000;
   EXPECT_THAT(StatusText(situation), Not(HasSubstr("too narrow")));
   situation.edge->depth.dropped = {{"left for later", 700}};
   EXPECT_THAT(StatusText(situation),
-              HasSubstr("recording: 1180 frames of 17 s (link too narrow) |"));
+              HasSubstr("recording: 1180 frames of 17 s, 96 MB (link too narrow) |"));
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("DELETED")));
+  situation.edge->frames_gone = 31;
+  EXPECT_THAT(
+      StatusText(situation),
+      HasSubstr(" (link too narrow), THE RIG HAS DELETED 31 frames that did not arrive | "));
+  situation.edge->spool_frames = 0;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | THE RIG HAS DELETED 31 frames that did"));
 }
 
 TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {
@@ -184,6 +192,10 @@ TEST(StatusReporterTest, F25ALostRigIsSaidWithHowLongAndWhetherItRecords) {
   EXPECT_THAT(StatusText(situation),
               StartsWith("RIG LOST for 12 s, it records: nothing is lost | closer"));
   EXPECT_THAT(StatusText(situation), Not(HasSubstr("link good")));
+  situation.edge->spool_keeps_s = 11.2;
+  EXPECT_THAT(StatusText(situation), StartsWith("RIG LOST for 12 s, it keeps the newest 11 s | c"));
+  situation.edge->spool_keeps_s = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(StatusText(situation), StartsWith("RIG LOST for 12 s, it keeps the newest only | c"));
 }
 
 TEST(StatusReporterTest, F32AModelThatIsMadeAnewSaysHowFarItIs) {

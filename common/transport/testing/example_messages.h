@@ -104,6 +104,9 @@ inline EdgeStatus Good() {
   status.marks = {{CaptureTimeFromNanoseconds(9), "left burner"},
                   {CaptureTimeFromNanoseconds(12), "right burner"}};
   status.served_ground = 0x1122334455667788;
+  status.spool_bytes = 9'000'000;
+  status.frames_gone = 12;
+  status.spool_keeps_s = 11.0;
   return status;
 }
 template <>
@@ -133,6 +136,7 @@ inline Feedback Good() {
   feedback.pose_covariance = PoseCovariance::Identity();
   feedback.advice_reason = "40 % is too far";
   feedback.frames_left_out = 3;
+  feedback.link = "link good";
   return feedback;
 }
 template <>
