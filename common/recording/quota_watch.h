@@ -16,6 +16,7 @@ namespace isotherm {
 class QuotaWatch {
  public:
   static constexpr std::uint64_t kNoQuota = std::numeric_limits<std::uint64_t>::max();
+  static constexpr double kBytesPerGb = 1e9;
   /// Says what counts takes on the disk, bytes; nullopt if that cannot be found out now.
   using Size = std::function<std::optional<std::uint64_t>()>;
   /// Other hands than the caller's only delete. Shorter: large folders are read through too often.
@@ -23,7 +24,7 @@ class QuotaWatch {
 
   /// `quota_gb` in 1e9 bytes; 0 = none.
   QuotaWatch(double quota_gb, Size size)
-      : quota_bytes_(static_cast<std::uint64_t>(quota_gb * 1e9)), size_(std::move(size)) {}
+      : quota_bytes_(static_cast<std::uint64_t>(quota_gb * kBytesPerGb)), size_(std::move(size)) {}
 
   /// Returns how many bytes are left; kNoQuota without one. `written`: what the caller has written
   /// so far, bytes.

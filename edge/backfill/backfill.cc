@@ -39,6 +39,8 @@ constexpr Nanoseconds kDisorder = 500ms;
 /// are up to 200 ms old, and the ground waits 200 ms for a missing frame.
 constexpr std::uint64_t kUsuallyUnderWay = 20;
 
+const std::vector<FrameRange> kAll = {{0, std::numeric_limits<std::uint64_t>::max()}};
+
 std::uint64_t Frames(const std::vector<FrameRange>& ranges) {
   return std::accumulate(
       ranges.begin(), ranges.end(), std::uint64_t{0},
@@ -109,7 +111,12 @@ bool Backfill::Step(const std::stop_token& stop) {
     next_look_ = now + kLookInterval;
     if (const std::optional<Receipt> receipt = parts_.publisher.receipt())
       TakeReceipt(*receipt, now);
+    if (!receipt_)
+      CountGone(Frames(parts_.recorded.DeletedOf(Sensor::kDepth, kAll)) +
+                Frames(parts_.recorded.DeletedOf(Sensor::kThermal, kAll)));
     if (source_has_ended) Settle(now);
+    // A file that is deleted takes its room for as long as it is open.
+    if (reader_.at() && !parts_.recorded.HasFile(reader_.at()->file)) reader_.Close();
   }
   if (!receipt_ || now < retry_at_ || !window_.MaySend(now)) return false;
   return SendNext(now, stop);
@@ -117,7 +124,7 @@ bool Backfill::Step(const std::stop_token& stop) {
 
 void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
   receipt_ = receipt;
-  std::uint64_t lacking = 0;
+  std::uint64_t lacking = 0, gone = 0;
   // Once nothing more is captured, what does not come by itself will not come.
   is_stalled_ = is_stalled_ || (is_ending_ && now - progress_at_ > kStalled);
   for (const auto& [sensor, stream] : {std::pair(Sensor::kDepth, &receipt_->depth),
@@ -126,17 +133,33 @@ void Backfill::TakeReceipt(const Receipt& receipt, SteadyTime now) {
     // What is behind the newest that arrived may be on its way, or wait on this side.
     missing.push_back({stream->next, std::numeric_limits<std::uint64_t>::max()});
     lacking += Frames(parts_.recorded.Of(sensor, missing));
+    gone += Frames(parts_.recorded.DeletedOf(sensor, missing));
     if (HasMoreHoles(*stream)) {
-      const std::uint64_t recorded =
-          Frames(parts_.recorded.Of(sensor, {{0, stream->holes.front().first - 1}}));
-      lacking += recorded - std::min(recorded, ReceivedBelow(*stream));
+      const std::vector<FrameRange> below{{0, stream->holes.front().first - 1}};
+      const std::uint64_t recorded = Frames(parts_.recorded.Of(sensor, below));
+      const std::uint64_t deleted = Frames(parts_.recorded.DeletedOf(sensor, below));
+      const std::uint64_t missed =
+          recorded + deleted - std::min(recorded + deleted, ReceivedBelow(*stream));
+      // Which ones is not told; the oldest are the likeliest.
+      gone += std::min(deleted, missed);
+      lacking += missed - std::min(deleted, missed);
     }
     NoteLost(sensor, window_.OnReceipt(sensor, NotConfirmed(*stream, missing), now));
     wanted_[static_cast<std::size_t>(sensor)] =
         parts_.recorded.Of(sensor, is_stalled_ ? missing : GivenUp(*stream));
   }
   lacking_ = lacking;
+  CountGone(gone);
   arrived_ = window_.confirmed();
+}
+
+void Backfill::CountGone(std::uint64_t frames) {
+  if (gone_ == 0 && frames > 0) {
+    LOG(Edge, Warning) << "the recording keeps the newest only (spool.when_full=KEEP_NEWEST): "
+                          "frames are deleted that the ground does not have, so far "
+                       << frames;
+  }
+  gone_ = frames;
 }
 
 void Backfill::NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames) {

@@ -64,6 +64,9 @@ class Backfill {
   bool is_settled() const { return settled_; }
   /// Returns how many recorded frames the ground lacks, as far as is known.
   std::uint64_t lacking() const { return lacking_; }
+  /// Returns how many frames the recording has deleted before the ground had them, as far as is
+  /// known.
+  std::uint64_t gone() const { return gone_; }
   /// Returns how many frames were sent from the recording and have arrived.
   std::uint64_t arrived() const { return arrived_; }
   /// Returns for how long it has been at one piece of work, such as reading from the disk.
@@ -76,6 +79,7 @@ class Backfill {
   using Wanted = std::array<std::vector<FrameRange>, 2>;
 
   void TakeReceipt(const Receipt& receipt, SteadyTime now);
+  void CountGone(std::uint64_t frames);
   /// These were sent and got lost; what gets lost again and again is not sent any more.
   void NoteLost(Sensor sensor, const std::vector<std::uint64_t>& frames);
   /// Says whether the end has come, by the newest receipt; the source has ended.
@@ -129,6 +133,7 @@ class Backfill {
   std::atomic<bool> source_ended_{false};
   std::atomic<bool> settled_{false};
   std::atomic<std::uint64_t> lacking_{0};
+  std::atomic<std::uint64_t> gone_{0};
   std::atomic<std::uint64_t> arrived_{0};
 };
 

@@ -329,5 +329,31 @@ TEST_F(BackfillTest, WhateverHappensToTheLinkAllArrivesInTheEnd) {
   }
 }
 
+TEST_F(BackfillTest, F41FramesThatAreDeletedBeforeTheGroundHasThemAreCounted) {
+  link_->carries = false;
+  CaptureFor(10s);
+  const auto next_file = [this] {
+    const std::filesystem::path before = file_;
+    ASSERT_TRUE(writer_->Close().ok());
+    file_ = folder_.path() / (std::to_string(files_++) + ".mcap");
+    writer_ = RecordingWriter::Create(file_, {.sync = false}).value();
+    recorded_->BeginFile(file_);
+    recorded_->DeleteUpTo(before);
+  };
+  next_file();
+  CaptureFor(1s);
+  EXPECT_EQ(backfill_->gone(), 800U) << "no ground has ever been there";
+  link_->carries = true;
+  CaptureFor(5s);
+  EXPECT_EQ(backfill_->gone(), 800U);
+  next_file();
+  CaptureFor(5s);
+  EXPECT_EQ(backfill_->gone(), 800U) << "what was deleted now had arrived";
+  End();
+  Pass(10s);
+  EXPECT_TRUE(backfill_->is_settled());
+  EXPECT_EQ(Missing(), 800U);
+}
+
 }  // namespace
 }  // namespace isotherm

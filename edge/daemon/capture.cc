@@ -77,6 +77,13 @@ void PrintSummary(const CaptureParts& parts, const EdgePipeline& pipeline, bool 
         fmt::format("backfill {} frames reached the ground from the recording\n", frames).c_str(),
         stdout);
   }
+  if (const std::uint64_t frames = pipeline.frames_gone(); frames > 0) {
+    std::fputs(fmt::format("deleted  {} frames that the ground does not have, to keep the newest "
+                           "(spool.when_full=KEEP_NEWEST)\n",
+                           frames)
+                   .c_str(),
+               stdout);
+  }
   std::fputs(
       CameraSummary(parts.health.Get(Sensor::kDepth), parts.health.Get(Sensor::kThermal)).c_str(),
       stdout);

@@ -115,14 +115,15 @@ Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const EdgeS
   if (!path) return nullptr;
   const auto files = std::make_shared<RecordingFiles>(RecordingDescription{
       *path, FromSeconds(options.spool().expert().flush_interval_s()), start.rig,
-      RecordingMetadata(options, start), before ? before->parts : 0});
+      RecordingMetadata(options, start), before ? before->parts : 0, /*sync=*/true, &clock});
   auto spool = std::make_unique<Spool>(SpoolParts{
       [files] { return files->Next(); }, [path] { return FreeDiskBytes(*path); }, options.spool(),
       clock, counters, [files](const RigUpdate& update) { files->Update(update); },
       before ? &*before : nullptr,
       [record = options.spool().record()] { return RecordingsSize(record); },
       [record = options.spool().record(), path] { return FetchedSize(record, *path); },
-      [record = options.spool().record(), path] { return DeleteOldestFetched(record, *path); }});
+      [record = options.spool().record(), path] { return DeleteOldestFetched(record, *path); },
+      [record = options.spool().record(), path] { return DeleteOldestFile(record, *path); }});
   if (options.spool().when_full() == DELETE_FETCHED && *path == options.spool().record()) {
     LOG(Edge, Warning)
         << "spool.when_full=DELETE_FETCHED deletes nothing, because spool.record names "
@@ -236,6 +237,7 @@ std::jthread CompleteInBackground(const InterruptedScan& before, ServedState& st
     for (const std::filesystem::path& file : files) {
       if (stop.stop_requested()) break;
       const auto cut = CompleteRecording(file);
+      if (!cut && cut.error().code() == StatusCode::kNotFound) continue;  // Deleted meanwhile.
       if (!cut) {
         LOG(Edge, Warning) << cut.error().message() << "; it is readable as it is";
       } else if (*cut) {

@@ -91,9 +91,13 @@ EdgeStatus EdgeMonitor::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.depth_camera = health_.Get(Sensor::kDepth);
   status.thermal_camera = health_.Get(Sensor::kThermal);
   status.spool_frames = pipeline_.frames_lacking();
+  status.frames_gone = pipeline_.frames_gone();
   AddHostStatus(host_.read(), status);
   if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
     status.disk_free_bytes = ToReport(recording->free_bytes);
+    status.spool_bytes = static_cast<std::uint64_t>(static_cast<double>(status.spool_frames) *
+                                                    recording->frame_bytes);
+    status.spool_keeps_s = recording->keeps_s;
   }
   status.marks = pipeline_.marks();
   status.clock.steps = pipeline_.clock_steps();

@@ -57,14 +57,20 @@ std::string StateText(const CameraReport& camera) {
   return camera.state == CameraState::kBlind ? " (camera blind)" : "";
 }
 
+/// Says what the recording has of what the ground lacks.
+std::string RecordedText(const EdgeStatus& status) {
+  if (!std::isfinite(status.spool_fill_ratio)) return "and there is no recording";
+  if (std::isnan(status.spool_keeps_s)) return "the newest of it is kept";
+  if (status.spool_keeps_s <= 0.0) return "what it lacks is recorded";
+  return fmt::format("the newest {:.0f} s are kept", status.spool_keeps_s);
+}
+
 /// "LOST for 12 s, what it lacks is recorded"; "absent" before it was there, and when it may leave.
 std::string AbsentText(const EdgeSituation& situation) {
   if (!situation.receipt_age || situation.status.scan_state != ScanState::kScanning)
     return "absent";
   return fmt::format("LOST for {:.0f} s, {}", ToSeconds(*situation.receipt_age),
-                     std::isfinite(situation.status.spool_fill_ratio)
-                         ? "what it lacks is recorded"
-                         : "and there is no recording");
+                     RecordedText(situation.status));
 }
 
 std::string GroundText(const EdgeSituation& situation) {
@@ -82,11 +88,15 @@ std::string OldText(const EdgeSituation& situation) {
   return is_old ? fmt::format("advice {:.1f} s OLD", ToSeconds(*situation.feedback_age)) : "";
 }
 
-/// "ground lacks 640 frames of 9 s", which the recording has; nothing while no more than usual are
-/// on their way.
+/// "ground lacks 640 frames of 9 s", which the recording has, and how many it has no more; nothing
+/// while no more than usual are on their way.
 std::string LackingText(const EdgeStatus& status) {
-  if (!HasBacklog(status)) return {};
-  return "ground lacks " + BacklogText(status);
+  std::string text = HasBacklog(status) ? "ground lacks " + BacklogText(status) : "";
+  if (status.frames_gone > 0) {
+    text += fmt::format("{}{} frames DELETED that it does not have", text.empty() ? "" : ", ",
+                        status.frames_gone);
+  }
+  return text;
 }
 
 /// Says how many arrived of those that left the rig; the line above has the others. The ground's

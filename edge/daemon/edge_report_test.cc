@@ -171,6 +171,8 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   EXPECT_THAT(StatusLine(lost), HasSubstr("ground: LOST for 12 s, and there is no recording"));
   lost.status.spool_fill_ratio = 0.0;
   EXPECT_THAT(StatusLine(lost), HasSubstr("ground: LOST for 12 s, what it lacks is recorded"));
+  lost.status.spool_keeps_s = 11.2;
+  EXPECT_THAT(StatusLine(lost), HasSubstr("ground: LOST for 12 s, the newest 11 s are kept"));
   EXPECT_THAT(Line({}, feedback, true, "refuses this scan"),
               HasSubstr("ground: refuses this scan |"));
   EXPECT_THAT(Line({}), HasSubstr("no feedback yet"));
@@ -228,6 +230,11 @@ TEST_F(EdgeReportTest, F25WhatTheGroundLacksIsSaidOnceItIsMoreThanUsual) {
   EXPECT_THAT(StatusLine(situation), HasSubstr("ground lacks 640 frames"));
   EXPECT_THAT(Narrow(situation), HasSubstr("ground lacks 640 frames"));
   EXPECT_THAT(StatusLine(situation), Not(HasSubstr("too narrow")));
+  situation.status.frames_gone = 31;
+  EXPECT_THAT(StatusLine(situation),
+              HasSubstr("ground lacks 640 frames, 31 frames DELETED that it does not have"));
+  situation.status.spool_frames = 0;
+  EXPECT_THAT(Narrow(situation), HasSubstr("  31 frames DELETED"));
 }
 
 TEST_F(EdgeReportTest, F28FramesThatAreLeftForLaterAreCountedAndTheReasonIsSaid) {

@@ -98,6 +98,8 @@ class EdgePipeline {
   /// Returns how many recorded frames the ground lacks, as far as is known, and how many were sent
   /// to it from the recording. Thread-safe.
   std::uint64_t frames_lacking() const { return backfill_ ? backfill_->lacking() : 0; }
+  /// Returns how many of them were deleted from the recording to keep the newest. Thread-safe.
+  std::uint64_t frames_gone() const { return backfill_ ? backfill_->gone() : 0; }
   std::uint64_t frames_backfilled() const { return backfill_ ? backfill_->arrived() : 0; }
   /// Returns the state of the camera's correction as of the newest thermal frame. Thread-safe.
   NucReport nuc() const { return nuc_report_.Get().value_or(NucReport()); }

@@ -11,11 +11,20 @@ namespace {
 // Shorter, and one chunk more or less would count.
 constexpr Nanoseconds kMeasuring = std::chrono::seconds(5);
 constexpr double kQuotaMargin_s = 10.0;
+constexpr double kMbPerGb = 1e3;
+
+/// Where the newest is kept, what the disk lacks is deleted: no more than a file need be free.
+double MaxReserve_mb(const SpoolOptions& options) {
+  const double reserve_mb = options.expert().reserve_mb();
+  return options.when_full() == KEEP_NEWEST
+             ? std::min(reserve_mb, kMbPerGb * options.quota_gb() / DiskWatch::kKeptParts)
+             : reserve_mb;
+}
 
 }  // namespace
 
 DiskWatch::DiskWatch(const SpoolOptions& options)
-    : max_reserve_bytes_(options.expert().reserve_mb() * kBytesPerMb),
+    : max_reserve_bytes_(MaxReserve_mb(options) * kBytesPerMb),
       reserve_s_(options.expert().reserve_s()),
       warn_s_(options.expert().warn_s()) {}
 

@@ -30,6 +30,9 @@ struct DiskSpace {
 /// quota has none. Thread-compatible.
 class DiskWatch {
  public:
+  /// Files of a recording that keeps the newest: the more, the less is deleted at once.
+  static constexpr double kKeptParts = 8.0;
+
   explicit DiskWatch(const SpoolOptions& options);
 
   /// To be called about once a second. `recorded_bytes`: of all files so far; it need not grow.
@@ -43,6 +46,8 @@ class DiskWatch {
   /// Returns whether it is the quota that ends first, not the disk.
   bool is_quota_first() const { return is_quota_first_; }
   double reserve_bytes() const { return reserve_bytes_; }
+  /// Returns how fast is recorded; 0: not known yet.
+  double bytes_per_s() const { return bytes_per_s_; }
 
  private:
   void Measure(SteadyTime now, std::uint64_t recorded_bytes);

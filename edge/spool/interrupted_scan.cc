@@ -14,6 +14,7 @@
 #include "common/recording/recording.h"
 #include "common/recording/recording_parts.h"
 #include "common/recording/recording_topics.h"
+#include "edge/spool/kept_part.h"
 #include "edge/spool/recording_listing.h"
 #include "edge/spool/recording_survey.h"
 
@@ -152,6 +153,16 @@ void AddTo(InterruptedScan& scan, const OpenPart& part) {
   scan.metadata = info.metadata;
 }
 
+/// Enters what the recording has had before its files that are left.
+void AddBefore(InterruptedScan& scan, const RecordedBefore& before) {
+  for (const Sensor sensor : kSensors) {
+    const StreamBefore& had = before.at(static_cast<std::size_t>(sensor));
+    RecordedStream& stream = scan.streams.at(static_cast<std::size_t>(sensor));
+    stream.frames = had.frames;
+    stream.next = stream.deleted = had.next;
+  }
+}
+
 }  // namespace
 
 std::map<std::string, std::string> ToMetadata(const ScanPart& part) {
@@ -187,7 +198,8 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
   if (!found || SessionOf(found->reader->info()) == 0) return std::nullopt;
   // Which part was written last says nothing: others may have been completed since.
   const std::vector<OpenPart> parts = PartsOf(std::move(*found), recordings);
-  const bool has_ended = parts.back().reader->info().complete ||
+  const RecordingInfo& newest = parts.back().reader->info();
+  const bool has_ended = (newest.complete && !GoesOn(newest)) ||
                          parts.back().listed.WrittenAt() < now - max_age ||
                          IsBeingWritten(parts.back().listed.path);
   if (has_ended) return std::nullopt;
@@ -196,6 +208,8 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
   scan.last = PartOf(parts.back().reader->info());
   scan.path = parts.back().listed.first;
   scan.parts = parts.back().listed.part;
+  if (const auto before = ReadRecordedBefore(parts.front().reader->info()))
+    AddBefore(scan, *before);
   for (const OpenPart& part : parts) AddTo(scan, part);
   const std::uint64_t next = std::max(scan.Of(Sensor::kDepth).next, scan.Of(Sensor::kThermal).next);
   if (next == 0) return std::nullopt;

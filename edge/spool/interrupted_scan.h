@@ -40,8 +40,10 @@ struct RecordedRun {
 /// Tells what a scan had recorded of one stream.
 struct RecordedStream {
   std::uint64_t frames = 0;  ///< How many.
-  std::uint64_t next = 0;    ///< One above the highest number.
-  double rate_hz = 0.0;      ///< Numbers per second at the end; 0: not known.
+  /// Numbers below are in no file any more: deleted, to keep the newest.
+  std::uint64_t deleted = 0;
+  std::uint64_t next = 0;  ///< One above the highest number.
+  double rate_hz = 0.0;    ///< Numbers per second at the end; 0: not known.
 };
 
 /// A scan that did not end: its process did, without closing the recording. Another process can go

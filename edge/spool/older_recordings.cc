@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -50,6 +51,18 @@ std::vector<std::vector<ListedRecording>> FetchedOf(const std::filesystem::path&
   return recordings;
 }
 
+/// Returns whether it could be deleted.
+bool Delete(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) {
+    LOG(Spool, Debug) << "cannot delete " << file.string() << ": " << error.message();
+    return false;
+  }
+  std::filesystem::remove(MarkOf(file), error);
+  return true;
+}
+
 }  // namespace
 
 Status MarkFetched(const std::filesystem::path& file, std::uint64_t size) {
@@ -90,16 +103,27 @@ std::optional<DeletedRecording> DeleteOldestFetched(const std::filesystem::path&
     DeletedRecording deleted{.name = files.front().first.filename().string()};
     for (const ListedRecording& file : files) {
       const std::uint64_t bytes = SizeOf(file.path);
-      std::error_code error;
-      std::filesystem::remove(file.path, error);
-      if (error) {
-        LOG(Spool, Debug) << "cannot delete " << file.path.string() << ": " << error.message();
-        continue;
-      }
-      std::filesystem::remove(MarkOf(file.path), error);
-      deleted.bytes += bytes;
+      if (Delete(file.path)) deleted.bytes += bytes;
     }
     if (deleted.bytes > 0) return deleted;
+  }
+  return std::nullopt;
+}
+
+std::optional<DeletedFile> DeleteOldestFile(const std::filesystem::path& record,
+                                            const std::filesystem::path& present) {
+  std::vector<ListedRecording> files = ListRecordings(record);
+  const auto is_present = [&present](const ListedRecording& file) {
+    return file.first.filename() == present.filename();
+  };
+  const auto own = std::partition(files.begin(), files.end(), std::not_fn(is_present));
+  std::sort(files.begin(), own, [](const auto& a, const auto& b) { return a.written < b.written; });
+  // Whatever the clock did meanwhile.
+  std::sort(own, files.end(), [](const auto& a, const auto& b) { return a.part < b.part; });
+  for (const ListedRecording& file : files) {
+    if (IsBeingWritten(file.path)) continue;
+    const bool was_fetched = IsFetched(file.path);
+    if (Delete(file.path)) return DeletedFile{file.path, is_present(file), was_fetched};
   }
   return std::nullopt;
 }

@@ -20,6 +20,12 @@ struct DeletedRecording {
   std::string name;  ///< Its first file's.
   std::uint64_t bytes = 0;
 };
+/// Says which file of a recording was.
+struct DeletedFile {
+  std::filesystem::path path;
+  bool is_of_present = false;  ///< The recording that is being written had it.
+  bool was_fetched = false;
+};
 
 /// Returns what all recordings that `record` names (see RecordingPath) take by now, bytes.
 std::uint64_t RecordingsSize(const std::filesystem::path& record);
@@ -31,5 +37,10 @@ std::uint64_t FetchedSize(const std::filesystem::path& record,
 /// none can be deleted.
 std::optional<DeletedRecording> DeleteOldestFetched(const std::filesystem::path& record,
                                                     const std::filesystem::path& present);
+/// Deletes one file, fetched or not, unless somebody writes it: of recordings other than the one
+/// whose first file is `present` the one that was written first, then the first of that; nullopt if
+/// there is none, or none can be deleted.
+std::optional<DeletedFile> DeleteOldestFile(const std::filesystem::path& record,
+                                            const std::filesystem::path& present);
 
 }  // namespace isotherm

@@ -91,5 +91,28 @@ TEST_F(OlderRecordingsTest, AMarkThatIsDamagedIsNone) {
   }
 }
 
+TEST_F(OlderRecordingsTest, FilesGoOneByOneTheOldestFirstAndThePresentRecordingLast) {
+  const std::string present_2 = "edge-20260103-000000-00000003-2.mcap";
+  const std::string present_10 = "edge-20260103-000000-00000003-10.mcap";
+  // Its clock was wrong when it began.
+  Put(present_2, 100, 999);
+  Put(present_10, 100, 1000);
+  Put(old_, 30, 9);
+  Put(old_2_, 30, 8);
+  Put(newer_, 20, 5);
+  ASSERT_TRUE(MarkFetched(Path(newer_), 20).ok());
+  Put("notes.mcap", 7, 99);
+  std::vector<std::string> deleted;
+  for (int i = 0; i < 6; ++i) {
+    const auto file = DeleteOldestFile(folder_.path(), Path(present_));
+    if (!file) continue;
+    deleted.push_back(file->path.filename().string());
+    EXPECT_EQ(file->is_of_present, i >= 3) << file->path;
+    EXPECT_EQ(file->was_fetched, file->path == Path(newer_));
+  }
+  EXPECT_THAT(deleted, ElementsAre(old_, old_2_, newer_, present_2, present_10));
+  EXPECT_THAT(Files(), ElementsAre("notes.mcap"));
+}
+
 }  // namespace
 }  // namespace isotherm

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -48,8 +49,20 @@ class RecordedFrames {
   /// The same for all frames of a file so far.
   void ForgetAll(Sensor sensor, const std::filesystem::path& file);
 
+  /// The frames of a stream before `number` were recorded and are deleted; nothing is known of it
+  /// yet.
+  void AddDeleted(Sensor sensor, std::uint64_t number);
+  /// A file of the recording is deleted to make room, the oldest that is there: none of its frames
+  /// can be read any more, nor those of files before it.
+  void DeleteUpTo(const std::filesystem::path& file);
+  /// Returns whether a file of the recording is still there, as far as is known.
+  bool HasFile(const std::filesystem::path& file) const;
+
   /// Returns which of the frames in `wanted`, ascending ranges, are recorded; ascending.
   std::vector<FrameRange> Of(Sensor sensor, const std::vector<FrameRange>& wanted) const;
+  /// The same for those that were recorded and are deleted. Where there are more than kMaxRuns of
+  /// these in a row, gaps between the oldest count as well.
+  std::vector<FrameRange> DeletedOf(Sensor sensor, const std::vector<FrameRange>& wanted) const;
   /// Returns a place at or before a recorded frame, or nothing if none is known.
   std::optional<Place> PlaceOf(Sensor sensor, std::uint64_t number) const;
 
@@ -58,18 +71,24 @@ class RecordedFrames {
   struct Mark {
     std::uint64_t number = 0;
     CaptureTime time{};
-    std::size_t file = 0;
+    std::size_t file = 0;  ///< Its number, of all files of the recording.
   };
   struct Stream {
-    std::vector<FrameRange> runs;  ///< Ascending, with gaps between them.
-    std::vector<Mark> marks;       ///< Ascending.
-    std::uint64_t stride = 32;     ///< Numbers between two marks.
+    std::vector<FrameRange> runs;     ///< Ascending, with gaps between them.
+    std::vector<FrameRange> deleted;  ///< The same; all lie before the runs.
+    std::vector<Mark> marks;          ///< Ascending.
+    std::uint64_t stride = 32;        ///< Numbers between two marks.
   };
   static void AddMark(const Mark& mark, Stream& stream);
   static void Cut(const FrameRange& frames, Stream& stream);
+  static void AddTo(const FrameRange& frames, std::vector<FrameRange>& deleted);
+  const std::filesystem::path& FileOf(const Mark& mark) const REQUIRES(mutex_) {
+    return files_[mark.file - deleted_files_];
+  }
 
   mutable Mutex mutex_;
-  std::vector<std::filesystem::path> files_ GUARDED_BY(mutex_);
+  std::deque<std::filesystem::path> files_ GUARDED_BY(mutex_);
+  std::size_t deleted_files_ GUARDED_BY(mutex_) = 0;  ///< Before those.
   std::array<Stream, 2> streams_ GUARDED_BY(mutex_);  ///< By Sensor.
 };
 

@@ -115,6 +115,48 @@ TEST(RecordedFramesTest, AFileThatCannotBeOpenedIsForgottenAndTheOthersAreNot) {
       << "what follows is known";
 }
 
+TEST(RecordedFramesTest, OfADeletedFileItIsKnownWhichFramesItHad) {
+  RecordedFrames recorded;
+  for (const auto& [file, first] :
+       {std::pair("scan.mcap", 0), std::pair("scan-2.mcap", 100), std::pair("scan-3.mcap", 200)}) {
+    recorded.BeginFile(file);
+    for (std::uint64_t number = first; number < first + 90U; ++number)
+      recorded.Add(Sensor::kDepth, number, TimeOf(number));
+  }
+  const std::vector<FrameRange> wanted = {{50, 249}};
+  recorded.DeleteUpTo("elsewhere.mcap");
+  EXPECT_THAT(recorded.DeletedOf(Sensor::kDepth, wanted), IsEmpty());
+  EXPECT_TRUE(recorded.HasFile("scan.mcap"));
+  // The first file went without a word.
+  recorded.DeleteUpTo("scan-2.mcap");
+  EXPECT_FALSE(recorded.HasFile("scan.mcap"));
+  EXPECT_THAT(recorded.DeletedOf(Sensor::kDepth, wanted),
+              ElementsAre(FrameRange{50, 89}, FrameRange{100, 189}));
+  EXPECT_THAT(recorded.Of(Sensor::kDepth, wanted), ElementsAre(FrameRange{200, 249}));
+  EXPECT_EQ(recorded.PlaceOf(Sensor::kDepth, 189), std::nullopt);
+  EXPECT_EQ(recorded.PlaceOf(Sensor::kDepth, 210)->file, "scan-3.mcap");
+  recorded.DeleteUpTo("scan-3.mcap");
+  recorded.BeginFile("scan-4.mcap");
+  recorded.Add(Sensor::kDepth, 100, TimeOf(100));
+  EXPECT_THAT(recorded.Of(Sensor::kDepth, wanted), IsEmpty()) << "numbers rise";
+  recorded.Add(Sensor::kDepth, 290, TimeOf(290));
+  EXPECT_EQ(recorded.PlaceOf(Sensor::kDepth, 290)->file, "scan-4.mcap");
+}
+
+TEST(RecordedFramesTest, ACameraThatComesLateKeepsItsFramesWhenFilesBeforeItAreDeleted) {
+  RecordedFrames recorded;
+  recorded.BeginFile("scan.mcap");
+  recorded.Add(Sensor::kDepth, 0, TimeOf(0));
+  recorded.BeginFile("scan-2.mcap");
+  recorded.Add(Sensor::kDepth, 1, TimeOf(1));
+  recorded.Add(Sensor::kThermal, 0, TimeOf(1));
+  recorded.DeleteUpTo("scan.mcap");
+  const std::vector<FrameRange> all = {{0, 1000}};
+  EXPECT_THAT(recorded.Of(Sensor::kThermal, all), ElementsAre(FrameRange{0, 0}));
+  EXPECT_THAT(recorded.DeletedOf(Sensor::kThermal, all), IsEmpty());
+  EXPECT_THAT(recorded.DeletedOf(Sensor::kDepth, all), ElementsAre(FrameRange{0, 0}));
+}
+
 TEST(RecordedFramesTest, LongScansAndManyGapsTakeBoundedMemory) {
   RecordedFrames recorded;
   recorded.BeginFile("scan.mcap");
@@ -136,6 +178,23 @@ TEST(RecordedFramesTest, LongScansAndManyGapsTakeBoundedMemory) {
   EXPECT_LE(known.size(), RecordedFrames::kMaxRuns);
   EXPECT_GE(known.size(), RecordedFrames::kMaxRuns / 2);
   EXPECT_EQ(known.back().last, 2 * (kGaps - 1));
+}
+
+TEST(RecordedFramesTest, FilesThatAreDeletedTakeNoMemory) {
+  RecordedFrames recorded;
+  constexpr std::uint64_t kFiles = 20'000;
+  for (std::uint64_t number = 0; number < kFiles; ++number) {
+    recorded.BeginFile(std::to_string(number));
+    // Frames in between are lost, so that each is a run of its own.
+    recorded.Add(Sensor::kDepth, 2 * number, TimeOf(number));
+    if (number >= 8) recorded.DeleteUpTo(std::to_string(number - 8));
+  }
+  EXPECT_EQ(recorded.Of(Sensor::kDepth, {{0, 2 * kFiles}}).size(), 8U);
+  const auto deleted = recorded.DeletedOf(Sensor::kDepth, {{0, 2 * kFiles}});
+  EXPECT_LE(deleted.size(), RecordedFrames::kMaxRuns);
+  EXPECT_GE(deleted.size(), RecordedFrames::kMaxRuns / 2);
+  EXPECT_EQ(deleted.front().first, 0U) << "what is gone is not forgotten";
+  EXPECT_EQ(recorded.PlaceOf(Sensor::kDepth, 2 * (kFiles - 1))->file, std::to_string(kFiles - 1));
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ Result<RecordingFile> RecordingFiles::Next() {
   const std::filesystem::path path = PartPath(description_.path, part);
   RecordingOptions options;
   options.flush_interval = description_.flush_interval;
+  options.sync = description_.sync;
+  options.clock = description_.clock;
   Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, options);
   if (!writer) return Err(writer.error());
   if (part_ == 0 && part > 1) {

@@ -20,7 +20,9 @@ struct RecordingDescription {
   Nanoseconds flush_interval{};
   std::optional<Rig> rig;
   Metadata metadata;
-  int parts = 0;  ///< Files that the recording has already.
+  int parts = 0;                 ///< Files that the recording has already.
+  bool sync = true;              ///< RecordingOptions::sync.
+  const Clock* clock = nullptr;  ///< RecordingOptions::clock.
 };
 
 /// Begins one file after the other. A name that is taken is left alone: the next number is. A

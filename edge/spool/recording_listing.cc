@@ -23,10 +23,9 @@ bool IsOwnName(std::string_view name) {
 }
 
 /// Returns the number of the part that a name ends with ("scan-2"), and cuts it off; 1: none.
-int TakePart(std::string_view& name) {
-  constexpr std::size_t kMaxDigits = 6;
+int TakePart(std::string_view& name, std::size_t max_digits) {
   const std::size_t dash = name.rfind('-');
-  if (dash == std::string_view::npos || name.size() - dash - 1 > kMaxDigits) return 1;
+  if (dash == std::string_view::npos || name.size() - dash - 1 > max_digits) return 1;
   int part = 0;
   const char* const end = name.data() + name.size();
   const auto [at, error] = std::from_chars(name.data() + dash + 1, end, part);
@@ -43,7 +42,9 @@ std::optional<ListedRecording> Parse(const std::filesystem::path& path, const st
     return stem.empty() ? IsOwnName(base) : base == stem;
   };
   std::string_view base = name;
-  const int part = is_base(base) ? 1 : TakePart(base);
+  // At a file a second, 9 digits last for thirty years; a name that somebody gave may end in a
+  // date.
+  const int part = is_base(base) ? 1 : TakePart(base, stem.empty() ? 9 : 6);
   if (!is_base(base)) return std::nullopt;
   const std::string first = std::string(base) + path.extension().string();
   return ListedRecording{path, path.parent_path() / first, part, {}};

@@ -9,11 +9,11 @@
 
 #include "common/base/log.h"
 #include "common/base/units.h"
-#include "common/options/option_problems.h"
 #include "common/recording/feedback_record.h"
 #include "common/recording/recording_parts.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/spool/interrupted_scan.h"
+#include "edge/spool/kept_part.h"
 #include "edge/spool/older_recordings.h"
 
 namespace isotherm {
@@ -29,19 +29,6 @@ constexpr Nanoseconds kProven = std::chrono::seconds(3);
 
 }  // namespace
 
-Status Validate(const SpoolOptions& options) {
-  OptionProblems problems("spool");
-  if (options.record().empty()) problems.Add("record", "is empty; name a file or say \"off\"");
-  problems.CheckRange("expert.queue_frames", options.expert().queue_frames(), 1, 100'000);
-  problems.CheckRange("expert.flush_interval_s", options.expert().flush_interval_s(), 0.05, 1.0);
-  problems.CheckRange("resume_s", options.resume_s(), 0.0, 86'400.0);
-  problems.CheckRange("quota_gb", options.quota_gb(), 0.0, 1'000'000.0);
-  problems.CheckRange("expert.reserve_s", options.expert().reserve_s(), 0.0, 86'400.0);
-  problems.CheckRange("expert.reserve_mb", options.expert().reserve_mb(), 0, 1'000'000);
-  problems.CheckRange("expert.warn_s", options.expert().warn_s(), 0.0, 86'400.0);
-  return problems.ToStatus();
-}
-
 Spool::Spool(SpoolParts parts)
     : parts_(std::move(parts)),
       disk_(parts_.options),
@@ -50,14 +37,18 @@ Spool::Spool(SpoolParts parts)
 }
 
 void Spool::TakeOver(const InterruptedScan& before) {
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal})
+    recorded_frames_.AddDeleted(sensor, before.Of(sensor).deleted);
   for (std::size_t i = 0; i < before.runs.size(); ++i) {
     const RecordedRun& run = before.runs[i];
     if (i == 0 || run.file != before.runs[i - 1].file) recorded_frames_.BeginFile(run.file);
     recorded_frames_.Add(run.sensor, run.frames, run.time);
   }
+  next_ = {before.Of(Sensor::kDepth).next, before.Of(Sensor::kThermal).next};
   closed_.depth_frames = before.Of(Sensor::kDepth).frames;
   closed_.thermal_frames = before.Of(Sensor::kThermal).frames;
   offered_ = {closed_.depth_frames, closed_.thermal_frames};
+  taken_over_ = closed_.depth_frames + closed_.thermal_frames;
   UpdateCounters();
 }
 
@@ -74,12 +65,22 @@ Status Spool::BeginFile() {
   file_ = std::move(*file);
   path_ = file_->path;
   if (!IsDevice(path_)) recorded_frames_.BeginFile(path_);  // The others cannot be read back.
-  begun_at_ = parts_.clock.SteadyNow();
   // Each file tells the clock's steps from its own beginning, so that it can be read without the
   // others.
   wall_minus_time_ = Nanoseconds(0);
-  LOG(Spool, Info) << "recording to " << path_.string();
-  return OkStatus();
+  if (std::exchange(is_next_part_, false)) {
+    LOG(Spool, Debug) << "recording to " << path_.string();  // As a rule once in some seconds.
+  } else {
+    begun_at_ = parts_.clock.SteadyNow();
+    LOG(Spool, Info) << "recording to " << path_.string();
+  }
+  return KeepsNewest() ? WriteBefore() : OkStatus();
+}
+
+Status Spool::WriteBefore() {
+  const RecordedBefore before{StreamBefore{closed_.depth_frames, next_[0]},
+                              StreamBefore{closed_.thermal_frames, next_[1]}};
+  return file_->writer->WriteMetadata(kBeforeMetadata, ToMetadata(before));
 }
 
 void Spool::BeginFileWhenDue() {
@@ -92,6 +93,7 @@ void Spool::BeginFileWhenDue() {
 void Spool::Add(const EncodedFrame& frame) {
   // Counted before anything can fail: what no file has is then known as not recorded.
   ++offered_[static_cast<std::size_t>(frame.sensor())];
+  EndPartWhenDue();
   BeginFileWhenDue();
   WriteLines();
   if (IsRecording()) Note(WriteFrame(frame));
@@ -142,14 +144,17 @@ void Spool::LookAtDisk() {
   if (!free_bytes_ && parts_.options.quota_gb() == 0.0) return;
   const DiskLevel before = std::exchange(level_, Measure());
   if (level_ == DiskLevel::kReserve) MakeRoom();
+  // A reader may hold what was deleted, so that the room is there a little later.
+  if (level_ == DiskLevel::kReserve && KeepsNewest() && DeleteOldest()) return;
   if (level_ == DiskLevel::kReserve) return EndAtReserve();
+  WarnIfLittleIsKept();
   if (std::exchange(at_reserve_, false)) {
     LOG(Spool, Info) << "there is space on the disk again, free_mb="
                      << std::lround(static_cast<double>(free_bytes_.value_or(0)) / kBytesPerMb)
                      << "; frames not recorded=" << NotRecorded() - not_recorded_before_;
     problem_ = OkStatus();
   }
-  if (level_ == DiskLevel::kLow && before == DiskLevel::kEnough) {
+  if (level_ == DiskLevel::kLow && before == DiskLevel::kEnough && !KeepsNewest()) {
     LOG(Spool, Warning) << (disk_.is_quota_first() ? "the quota of recordings (spool.quota_gb)"
                                                    : "the disk")
                         << " of " << path_.string()
@@ -166,10 +171,11 @@ DiskLevel Spool::Measure() {
     deletable_bytes_ = parts_.deletable_size();
   }
   const std::uint64_t own_bytes = OwnBytes();
+  quota_left_bytes_ = quota_.Left(now, own_bytes);
   // Without an answer the disk is not what ends the recording.
   return disk_.Update(now,
                       {free_bytes_.value_or(std::numeric_limits<std::uint64_t>::max()),
-                       quota_.Left(now, own_bytes), deletable_bytes_},
+                       quota_left_bytes_, deletable_bytes_},
                       own_bytes, at_reserve_);
 }
 
@@ -177,8 +183,44 @@ std::uint64_t Spool::OwnBytes() const {
   return closed_.bytes + (IsRecording() ? file_->writer->stats().bytes : 0);
 }
 
+bool Spool::KeepsNewest() const { return parts_.options.when_full() == KEEP_NEWEST; }
+
 bool Spool::MayDelete() const {
   return parts_.options.when_full() == DELETE_FETCHED && parts_.make_room;
+}
+
+void Spool::EndPartWhenDue() {
+  if (!KeepsNewest() || !IsRecording()) return;
+  const double part_bytes =
+      parts_.options.quota_gb() * QuotaWatch::kBytesPerGb / DiskWatch::kKeptParts;
+  if (static_cast<double>(file_->writer->stats().bytes) < part_bytes) return;
+  Status ended = file_->writer->WriteMetadata(kGoesOnMetadata, {{"in", "the next file"}});
+  const Status closed = CloseFile();
+  if (ended.ok()) ended = closed;
+  is_next_part_ = ended.ok();
+  Note(ended);
+}
+
+bool Spool::DeleteOldest() {
+  constexpr int kMaxAtOnce = 2;
+  bool was_any = false;
+  for (int i = 0; i < kMaxAtOnce && level_ == DiskLevel::kReserve && parts_.delete_oldest; ++i) {
+    const std::optional<DeletedFile> deleted = parts_.delete_oldest();
+    if (!deleted) break;
+    was_any = true;
+    if (deleted->is_of_present) {
+      LOG(Spool, Debug) << "deleted " << deleted->path.string() << " to keep what is newer";
+      recorded_frames_.DeleteUpTo(deleted->path);
+    } else {
+      LOG(Spool, Warning) << "deleted " << deleted->path.string() << ", which was "
+                          << (deleted->was_fetched ? "" : "NOT ")
+                          << "fetched, to keep what is newer (spool.when_full=KEEP_NEWEST)";
+    }
+    quota_.AskAgain();
+    AskForFreeBytes();
+    level_ = Measure();
+  }
+  return was_any;
 }
 
 void Spool::MakeRoom() {
@@ -225,9 +267,11 @@ void Spool::EndAtReserve() {
                 "reserve_s)",
                 disk_.reserve_bytes() / kBytesPerMb);
   problem_ = ResourceExhausted(
-      fmt::format("{}: {} is complete up to here, no frame is recorded from now on; delete old "
-                  "recordings, or fetch them and set spool.when_full=DELETE_FETCHED",
-                  what, path_.empty() ? "the recording" : path_.string()));
+      fmt::format("{}: {} is complete up to here, no frame is recorded from now on; {}", what,
+                  path_.empty() ? "the recording" : path_.string(),
+                  KeepsNewest() ? "none of the rig's recordings can be deleted: make room"
+                                : "delete old recordings, or fetch them and set "
+                                  "spool.when_full=DELETE_FETCHED"));
   if (first_error_.ok()) first_error_ = closed.ok() ? problem_ : closed;
   LOG(Spool, Error) << problem_.message()
                     << (parts_.options.when_full() == STOP_SCAN
@@ -248,7 +292,7 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
   ISOTHERM_RETURN_IF_ERROR(WriteClockStep(frame));
   if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
     ISOTHERM_RETURN_IF_ERROR(writer.Write(*depth, frame.arrival));
-    recorded_frames_.Add(Sensor::kDepth, depth->header.frame_number, time);
+    NoteRecorded(Sensor::kDepth, depth->header);
     return OkStatus();
   }
   const auto& thermal = std::get<EncodedThermalFrame>(frame.content);
@@ -256,8 +300,14 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
   // Noting the shutter may have ended the file: then there is no writer any more.
   if (!IsRecording()) return OkStatus();
   ISOTHERM_RETURN_IF_ERROR(writer.Write(thermal, frame.arrival));
-  recorded_frames_.Add(Sensor::kThermal, thermal.header.frame_number, time);
+  NoteRecorded(Sensor::kThermal, thermal.header);
   return OkStatus();
+}
+
+void Spool::NoteRecorded(Sensor sensor, const FrameHeader& header) {
+  recorded_frames_.Add(sensor, header.frame_number, header.capture_time);
+  std::uint64_t& next = next_[static_cast<std::size_t>(sensor)];
+  next = std::max(next, header.frame_number + 1);
 }
 
 Status Spool::WriteClockStep(const EncodedFrame& frame) {
@@ -329,46 +379,6 @@ void Spool::NoteWorks() {
   back_off_.Reset();
   LOG(Spool, Warning) << "the disk works again, recording to " << path_.string()
                       << "; frames not recorded=" << NotRecorded() - not_recorded_before_;
-}
-
-std::uint64_t Spool::NotRecorded() const {
-  std::uint64_t recorded = closed_.depth_frames + closed_.thermal_frames;
-  if (IsRecording()) {
-    const RecordingStats stats = file_->writer->stats();
-    recorded += stats.depth_frames + stats.thermal_frames;
-  }
-  return offered_[0] + offered_[1] - recorded;
-}
-
-void Spool::UpdateCounters() {
-  // Remembered while all is well, so that the message at the end of a failure says what that
-  // failure cost.
-  if (problem_.ok()) not_recorded_before_ = NotRecorded();
-  const RecordingStats open = IsRecording() ? file_->writer->stats() : RecordingStats();
-  const auto set = [this](Sensor sensor, std::uint64_t recorded) {
-    parts_.counters.Set(sensor, FrameFate::kRecorded, recorded);
-    parts_.counters.Set(sensor, FrameFate::kRecordFailed,
-                        offered_[static_cast<std::size_t>(sensor)] - recorded);
-  };
-  set(Sensor::kDepth, closed_.depth_frames + open.depth_frames);
-  set(Sensor::kThermal, closed_.thermal_frames + open.thermal_frames);
-}
-
-std::string Spool::Brief() const {
-  const bool is_quota = disk_.is_quota_first();
-  if (at_reserve_) {
-    return is_quota ? "NOT RECORDING: quota used up" : "NOT RECORDING: disk full";
-  }
-  if (!problem_.ok()) return IsRecording() ? "disk was failing" : "NOT RECORDING: disk fails";
-  if (free_bytes_unknown_) return "free space of the disk not known";
-  if (level_ != DiskLevel::kLow) return "";
-  return fmt::format("{} in {:.0f} min", is_quota ? "quota used up" : "disk full",
-                     disk_.left_s() / 60.0);
-}
-
-void Spool::UpdateStatus() {
-  newest_status_.Set(
-      {path_, free_bytes_, disk_.left_s(), problem_.message(), Brief(), at_reserve_});
 }
 
 }  // namespace isotherm

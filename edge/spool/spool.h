@@ -63,6 +63,8 @@ struct SpoolParts {
   std::function<std::uint64_t()> deletable_size{};
   /// Deletes the one of them that may go first; nullopt: none may. May be empty.
   std::function<std::optional<DeletedRecording>()> make_room{};
+  /// Deletes the oldest file of all, to keep the newest; nullopt: none can be. May be empty.
+  std::function<std::optional<DeletedFile>()> delete_oldest{};
 };
 
 /// Holds the state of the recording.
@@ -73,7 +75,9 @@ struct SpoolStatus {
   /// Both say what is wrong and what to do, in a sentence and in a few words; empty if nothing is.
   std::string problem;
   std::string brief;
-  bool is_full = false;  ///< The recording has ended for lack of space.
+  bool is_full = false;      ///< The recording has ended for lack of space.
+  double frame_bytes = 0.0;  ///< Mean size in the recording, of both cameras.
+  double keeps_s = 0.0;      ///< So much of the scan is kept; 0: all of it, NaN: not known yet.
 };
 
 /// The recording on the edge's own disk, with the shutter events that the thermal frames tell of
@@ -84,7 +88,8 @@ struct SpoolStatus {
 ///
 /// After an error the file is closed as it is, for what the disk did with it is not known, and
 /// never touched again; frames that no file has are counted. At the reserve, or at the end of the
-/// quota, it is closed properly, unless older recordings may be deleted.
+/// quota, it is closed properly, unless older recordings may be deleted. Where the newest is kept,
+/// a recording has files of an eighth of the quota, of which the oldest are deleted.
 /// A file that got no frame is removed. Nothing of this ends the scan. Thread-bound but for
 /// status(): one thread adds, tends and closes.
 class Spool {
@@ -127,8 +132,15 @@ class Spool {
   /// Deletes what may go, until there is room or nothing more may.
   void MakeRoom();
   bool MayDelete() const;
+  bool KeepsNewest() const;
+  /// Deletes the oldest files while there is no room, a few at a time. Returns whether any was.
+  bool DeleteOldest();
+  /// Closes a file that has its part of what is kept: the next one is begun.
+  void EndPartWhenDue();
+  Status WriteBefore();
   void EndAtReserve();
   Status WriteFrame(const EncodedFrame& frame);
+  void NoteRecorded(Sensor sensor, const FrameHeader& header);
   Status WriteRig(const RigUpdate& update);
   void NoteShutter(const EncodedThermalFrame& frame);
   /// A step that a dropped frame would have told of is told by the next one.
@@ -144,6 +156,9 @@ class Spool {
   Status CloseFile();
   void UpdateCounters();
   void UpdateStatus();
+  /// Returns how much of the scan is kept, s; 0: all of it, NaN: not known yet.
+  double KeptSeconds() const;
+  void WarnIfLittleIsKept();
   std::string Brief() const;
   std::uint64_t NotRecorded() const;
 
@@ -162,13 +177,18 @@ class Spool {
   bool at_reserve_ = false;
   BackOff back_off_;
   SteadyTime retry_at_{};
-  SteadyTime begun_at_{};  ///< The newest file.
+  SteadyTime begun_at_{};      ///< The newest file.
+  bool is_next_part_ = false;  ///< The next file goes on where one has its part.
+  std::uint64_t quota_left_bytes_ = QuotaWatch::kNoQuota;
+  bool warned_of_little_ = false;
   SteadyTime next_look_{};
   std::optional<std::uint64_t> free_bytes_;
   bool free_bytes_unknown_ = false;  ///< Asked for, and there was no answer.
   DiskLevel level_ = DiskLevel::kEnough;
   std::optional<CaptureTime> newest_;       ///< Capture time of the frames so far.
   std::array<std::uint64_t, 2> offered_{};  ///< By Sensor.
+  std::array<std::uint64_t, 2> next_{};     ///< One above the highest number, by Sensor.
+  std::uint64_t taken_over_ = 0;            ///< Frames of processes before.
   std::uint64_t not_recorded_before_ = 0;   ///< When all was well last.
   std::uint64_t refused_ = 0;               ///< Messages that cannot be recorded on any disk.
   std::optional<CaptureTime> shutter_closed_at_;

@@ -87,7 +87,10 @@ std::string FirstFile(const std::string& name, const std::vector<RemoteRecording
   const std::string first = stem.substr(0, dash) + path.extension().string();
   const bool is_there =
       std::ranges::find(recordings, first, &RemoteRecording::name) != recordings.end();
-  return is_there ? first : name;
+  // Where a rig keeps the newest only, the first file is deleted; the others have its name.
+  constexpr std::string_view kNameOfFirst = "edge-00000000-000000-ffffffff";
+  const bool is_part = stem.starts_with("edge-") && dash == kNameOfFirst.size();
+  return is_there || is_part ? first : name;
 }
 
 /// Returns those that are meant, as the list has them.

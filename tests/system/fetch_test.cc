@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -143,6 +144,24 @@ TEST_F(FetchTest, ARigThatGivesNothingAwayIsNotWaitedForForEver) {
   const Finished list = RunToEnd(Fetch({}), kPatience);
   EXPECT_EQ(list.status, 69) << list.output;
   EXPECT_THAT(list.output, HasSubstr("has not answered"));
+}
+
+TEST_F(FetchTest, OfARecordingThatKeepsTheNewestAllFilesThatAreLeftAreFetched) {
+  Process edge(Edge(10, {"--set", "spool.when_full=KEEP_NEWEST", "--set", "spool.quota_gb=0.001"}));
+  ASSERT_TRUE(edge.WaitForOutput("waiting for the order to start", kPatience)) << edge.output();
+  std::set<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(recordings_.path()))
+    left.insert(entry.path().filename());
+  ASSERT_GT(left.size(), 1U);
+  EXPECT_FALSE(std::ranges::any_of(left, [](const std::string& name) {
+    return name.size() == std::string("edge-00000000-000000-ffffffff.mcap").size();
+  })) << "the first one is deleted";
+  const Finished fetched = RunToEnd(Fetch({"--newest"}), kPatience);
+  EXPECT_EQ(fetched.status, 0) << fetched.output;
+  std::set<std::string> here;
+  for (const auto& entry : std::filesystem::directory_iterator(here_))
+    here.insert(entry.path().filename());
+  EXPECT_EQ(here, left);
 }
 
 TEST_F(FetchTest, F41WhatWasFetchedMakesRoom) {
