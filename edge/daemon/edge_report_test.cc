@@ -232,7 +232,7 @@ TEST_F(EdgeReportTest, F25WhatTheGroundLacksIsSaidOnceItIsMoreThanUsual) {
   EXPECT_THAT(StatusLine(situation), Not(HasSubstr("too narrow")));
   situation.status.frames_gone = 31;
   EXPECT_THAT(StatusLine(situation),
-              HasSubstr("ground lacks 640 frames, 31 frames DELETED that it does not have"));
+              HasSubstr("ground lacks 640 frames of 9 s, 31 frames DELETED that it does not have"));
   situation.status.spool_frames = 0;
   EXPECT_THAT(Narrow(situation), HasSubstr("  31 frames DELETED"));
 }
