@@ -90,7 +90,9 @@ class KeepNewestTest : public ::testing::Test {
     for (const auto& [stream, frames] :
          {std::pair("depth", &received.depth), std::pair("thermal", &received.thermal)}) {
       SCOPED_TRACE(stream);
-      const auto link = [&](const char* what) { return NumberAt(stats, {"link", stream, what}); };
+      const auto link = [&stats, name = stream](const char* what) {
+        return NumberAt(stats, {"link", name, what});
+      };
       const std::set<std::uint64_t> numbers = Numbers(*frames);
       EXPECT_EQ(numbers.size(), frames->size()) << "each once";
       EXPECT_EQ(static_cast<double>(numbers.size()), link("received"));
