@@ -21,7 +21,6 @@ namespace isotherm::system_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// The small scan with images of this many times its width and height gives 0.26 MB/s, of which 1
 /// MB is kept.
