@@ -72,43 +72,45 @@ TEST(RecordingFaultTest, FullDiskIsReportedAndTheCountersAreExact) {
 /// A disk in memory whose sync fails from some time on.
 class UnsyncedSink final : public ByteSink {
  public:
-  explicit UnsyncedSink(const bool& fails) : fails_(fails) {}
+  struct Disk {
+    bool fails = false;
+    int writes_after_failure = 0;
+    int syncs_after_failure = 0;
+  };
+  explicit UnsyncedSink(Disk& disk) : disk_(disk) {}
   Status Write(std::span<const std::uint8_t> /*bytes*/) override {
-    if (fails_) ++writes_after_failure;
+    if (disk_.fails) ++disk_.writes_after_failure;
     return OkStatus();
   }
   Status Sync() override {
-    if (fails_) ++syncs_after_failure;
-    return fails_ ? IoError("input/output error") : OkStatus();
+    if (disk_.fails) ++disk_.syncs_after_failure;
+    return disk_.fails ? IoError("input/output error") : OkStatus();
   }
   Status Close() override { return OkStatus(); }
 
-  static inline int writes_after_failure = 0;
-  static inline int syncs_after_failure = 0;
-
  private:
-  const bool& fails_;
+  Disk& disk_;
 };
 
 TEST(RecordingFaultTest, F43WhatWasNotSyncedIsNotCountedAsRecordedAndSyncIsNotTriedAgain) {
-  bool fails = false;
-  auto writer = MakeRecordingWriter(std::make_unique<UnsyncedSink>(fails), kSmallChunks);
+  UnsyncedSink::Disk disk;
+  auto writer = MakeRecordingWriter(std::make_unique<UnsyncedSink>(disk), kSmallChunks);
   ASSERT_TRUE(writer.has_value());
   ASSERT_TRUE((*writer)->Write(MakeDepth(0, kScanStart), std::nullopt).ok());
   ASSERT_TRUE((*writer)->Flush().ok());
   ASSERT_TRUE((*writer)->Write(MakeDepth(1, kScanStart), std::nullopt).ok());
-  fails = true;
+  disk.fails = true;
   EXPECT_EQ((*writer)->Flush().code(), StatusCode::kIoError);
   EXPECT_EQ((*writer)->stats().depth_frames, 1U);
   EXPECT_EQ((*writer)->stats().failed, 1U);
   EXPECT_EQ((*writer)->stats().unsynced, 1U);
-  const int writes = UnsyncedSink::writes_after_failure;
+  const int writes = disk.writes_after_failure;
   EXPECT_FALSE((*writer)->Write(MakeDepth(2, kScanStart), std::nullopt).ok());
   EXPECT_FALSE((*writer)->Close().ok());
   EXPECT_EQ((*writer)->stats().failed, 2U);
   EXPECT_EQ((*writer)->stats().unsynced, 1U);
-  EXPECT_EQ(UnsyncedSink::syncs_after_failure, 1) << "the kernel has forgotten the error by then";
-  EXPECT_EQ(UnsyncedSink::writes_after_failure, writes);
+  EXPECT_EQ(disk.syncs_after_failure, 1) << "the kernel has forgotten the error by then";
+  EXPECT_EQ(disk.writes_after_failure, writes);
 }
 
 TEST(RecordingFaultTest, FullDiskFailsEveryFurtherCall) {
