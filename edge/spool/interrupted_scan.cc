@@ -16,6 +16,7 @@
 #include "common/recording/recording_topics.h"
 #include "edge/spool/kept_part.h"
 #include "edge/spool/recording_listing.h"
+#include "edge/spool/recording_metadata.h"
 #include "edge/spool/recording_survey.h"
 
 namespace isotherm {
@@ -33,15 +34,9 @@ constexpr std::uint64_t kSpareNumbers = 8;
 /// second, and as much again for a disk that is slow. Longer: the ground takes the numbers for a
 /// jump.
 constexpr Nanoseconds kMinPassed = 1s;
-/// A hundred years of a camera: higher numbers are damage, and the ground refuses them.
-constexpr std::uint64_t kMaxNumber = std::uint64_t{1} << 38U;
 
-/// Returns the value of the scan's metadata; empty if there is none.
 std::string ScanValue(const RecordingInfo& info, const char* key) {
-  const auto scan = info.metadata.find(std::string(kScanMetadata));
-  if (scan == info.metadata.end()) return {};
-  const auto value = scan->second.find(key);
-  return value == scan->second.end() ? std::string() : value->second;
+  return MetadataText(info, kScanMetadata, key);
 }
 
 constexpr const char* kEdgeIdKey = "edge_id";
@@ -51,10 +46,7 @@ constexpr std::array kFirstNumberKeys = {"first_depth_frame", "first_thermal_fra
 
 /// Returns the number there; 0 if it is none.
 std::uint64_t NumberOf(const RecordingInfo& info, const char* key) {
-  const std::string text = ScanValue(info, key);
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? number : 0;
+  return MetadataNumber(info, kScanMetadata, key).value_or(0);
 }
 
 std::uint64_t SessionOf(const RecordingInfo& info) { return NumberOf(info, kSessionKey); }
@@ -64,11 +56,12 @@ ScanPart PartOf(const RecordingInfo& info) {
   const auto number = [&info](const char* key, std::uint64_t max) {
     return NumberOf(info, key) <= max ? NumberOf(info, key) : 0;
   };
-  return {ScanValue(info, kEdgeIdKey),
-          SessionOf(info),
-          CaptureTimeFromNanoseconds(
-              static_cast<std::int64_t>(number(kBegunKey, recording::kMaxRecordedNanoseconds))),
-          {number(kFirstNumberKeys[0], kMaxNumber), number(kFirstNumberKeys[1], kMaxNumber)}};
+  return {
+      ScanValue(info, kEdgeIdKey),
+      SessionOf(info),
+      CaptureTimeFromNanoseconds(
+          static_cast<std::int64_t>(number(kBegunKey, recording::kMaxRecordedNanoseconds))),
+      {number(kFirstNumberKeys[0], kMaxFrameNumber), number(kFirstNumberKeys[1], kMaxFrameNumber)}};
 }
 
 /// An opened file of a scan.
@@ -134,7 +127,7 @@ void AddTo(InterruptedScan& scan, const OpenPart& part) {
     if (found.places.empty() || found.places.front().number < stream.next) continue;
     const std::uint64_t before = stream.next;
     stream.frames += found.frames;
-    stream.next = std::min(found.last.number, kMaxNumber) + 1;
+    stream.next = std::min(found.last.number, kMaxFrameNumber) + 1;
     // A camera that was away for a part of the time has a lower rate than that of its frames.
     stream.rate_hz = std::max(found.rate_hz, NominalRate(info, sensor));
     scan.newest = std::max(scan.newest, found.last.time);
@@ -213,10 +206,11 @@ std::optional<InterruptedScan> FindInterruptedScan(const std::string& record,
   for (const OpenPart& part : parts) AddTo(scan, part);
   const std::uint64_t next = std::max(scan.Of(Sensor::kDepth).next, scan.Of(Sensor::kThermal).next);
   if (next == 0) return std::nullopt;
-  if (next > kMaxNumber || now < scan.newest) {
+  if (next > kMaxFrameNumber || now < scan.newest) {
     LOG(Spool, Warning) << scan.path.string() << " was interrupted, and is not gone on with: "
-                        << (next > kMaxNumber ? "its frame numbers cannot be"
-                                              : "the clock was set back since its newest frame");
+                        << (next > kMaxFrameNumber
+                                ? "its frame numbers cannot be"
+                                : "the clock was set back since its newest frame");
     return std::nullopt;
   }
   return scan;

@@ -14,6 +14,7 @@
 #include "common/testing/test_seed.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/spool/interrupted_scan.h"
+#include "edge/spool/kept_part.h"
 #include "edge/spool/older_recordings.h"
 #include "edge/spool/recorded_frame_reader.h"
 #include "edge/spool/recording_files.h"
@@ -239,6 +240,24 @@ TEST_F(KeepNewestTest, TakesAQuotaAndAFolder) {
   options_.set_record("scan.mcap");
   EXPECT_THAT(Validate(options_).message(),
               HasSubstr("\"scan.mcap\" is no folder; with when_full=KEEP_NEWEST name one"));
+}
+
+TEST(KeptPartTest, WhatAFileSaysOfThoseBeforeItIsBelievedIfItCanBe) {
+  RecordingInfo info;
+  EXPECT_FALSE(ReadRecordedBefore(info));
+  auto& values = info.metadata[std::string(kBeforeMetadata)];
+  const auto good = values = ToMetadata(RecordedBefore{StreamBefore{5, 7}, StreamBefore{3, 9}});
+  const std::optional<RecordedBefore> before = ReadRecordedBefore(info);
+  ASSERT_TRUE(before);
+  EXPECT_EQ((*before)[1].frames, 3U);
+  EXPECT_EQ((*before)[1].next, 9U);
+  for (const std::string bad : {"", "-1", "4x", "10", "99999999999999999999"}) {
+    values = good;
+    values["thermal_frames"] = bad;
+    EXPECT_FALSE(ReadRecordedBefore(info)) << bad;
+  }
+  values = ToMetadata(RecordedBefore{StreamBefore{5, std::uint64_t{1} << 40U}, StreamBefore()});
+  EXPECT_FALSE(ReadRecordedBefore(info)) << "a camera of a thousand years";
 }
 
 }  // namespace

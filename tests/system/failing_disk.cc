@@ -28,20 +28,10 @@ int ErrorNow() {
   return error;
 }
 
-int OpenUnlessAway(const char* function, const char* path, int flags, mode_t mode) {
-  const auto real = reinterpret_cast<Open>(dlsym(RTLD_NEXT, function));
+bool IsAway(const char* path, int flags) {
   static const char* const folder = std::getenv("FAILING_DISK_FOLDER");
-  const bool is_meant = folder != nullptr && (flags & O_ACCMODE) != O_RDONLY &&
-                        std::string_view(path).substr(0, std::string_view(folder).size()) == folder;
-  if (const int error = is_meant ? ErrorNow() : 0; error != 0) {
-    errno = error;
-    return -1;
-  }
-  return real(path, flags, mode);
-}
-
-mode_t ModeOf(int flags, va_list arguments) {
-  return (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
+  return folder != nullptr && (flags & O_ACCMODE) != O_RDONLY &&
+         std::string_view(path).substr(0, std::string_view(folder).size()) == folder;
 }
 
 }  // namespace
@@ -55,18 +45,17 @@ extern "C" int fdatasync(int descriptor) {
   return real(descriptor);
 }
 
-// Both are the same function; which one a program calls depends on how it was compiled.
 extern "C" int open(const char* path, int flags, ...) {
+  static const auto real = reinterpret_cast<Open>(dlsym(RTLD_NEXT, "open"));
+  if (const int error = IsAway(path, flags) ? ErrorNow() : 0; error != 0) {
+    errno = error;
+    return -1;
+  }
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = ModeOf(flags, arguments);
+  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
   va_end(arguments);
-  return OpenUnlessAway("open", path, flags, mode);
+  return real(path, flags, mode);
 }
-extern "C" int open64(const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const mode_t mode = ModeOf(flags, arguments);
-  va_end(arguments);
-  return OpenUnlessAway("open64", path, flags, mode);
-}
+// The same function; which name a program calls depends on how it was compiled.
+extern "C" int open64(const char* path, int flags, ...) __attribute__((alias("open")));
