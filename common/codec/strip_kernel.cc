@@ -6,6 +6,7 @@
 #include "common/codec/rans.h"
 #include "common/codec/residual_token.h"
 #include "common/codec/strip_kernel.h"
+#include "common/simd/packing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
@@ -159,7 +160,9 @@ void TokenizeThermalRow(const codec::StripRow& row, const codec::StripTokens& to
 HWY_INLINE VS Emit(VS state, MS full, int part, std::int32_t*& queue) {
   const VS strip = hn::ShiftLeft<16>(hn::Iota(ds, part * kLanes));
   const VS word = hn::Or(hn::And(state, Int(0xFFFF)), strip);
-  queue += hn::CompressStore(word, full, ds, queue);
+  const Packing<DS> packing(full);
+  packing.Store(word, queue);
+  queue += packing.count();
   return hn::IfThenElse(full, hn::ShiftRight<16>(state), state);
 }
 

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "ground/thermal/fuse_block_kernel.cc"
 #include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
+#include "common/simd/packing-inl.h"
 #include "ground/surface/block_layout.h"
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/voxel_layout.h"
@@ -168,11 +169,12 @@ HWY_INLINE VI TemperatureCode(const RecordVectors& record, const ImagePlace& pla
 /// Appends the lanes of `noted` to what was measured; `i` is the first lane's voxel.
 HWY_INLINE void Note(int i, VI fresh, VI flags, MI noted, MI takes, BlockMeasurements& measured) {
   const VI index =
-      hn::Or(hn::Iota(di, i), hn::IfThenElseZero(takes, hn::Set(di, BlockMeasurements::kAssigned)));
-  hn::CompressStore(fresh, noted, di, measured.words + measured.count);
-  hn::CompressStore(flags, noted, di, measured.flags + measured.count);
-  measured.count +=
-      static_cast<int>(hn::CompressStore(index, noted, di, measured.voxels + measured.count));
+      hn::Or(CountFrom(i), hn::IfThenElseZero(takes, hn::Set(di, BlockMeasurements::kAssigned)));
+  const Packing<DI> packing(noted);
+  packing.Store(fresh, measured.words + measured.count);
+  packing.Store(flags, measured.flags + measured.count);
+  packing.Store(index, measured.voxels + measured.count);
+  measured.count += packing.count();
 }
 
 // Gives the voxels near the surface the temperatures of the pixels they are seen in. A voxel takes

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "ground/tsdf/culling_kernel.cc"
 #include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
+#include "common/simd/packing-inl.h"
 #include "ground/tsdf/culling_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -33,8 +34,9 @@ std::int32_t CullBlocks(const float (&planes)[kFrustumPlanes][4], const std::int
                                 hn::MulAdd(hn::Set(d, plane[2]), bz, hn::Set(d, plane[3])))));
     }
     const auto seen = hn::RebindMask(di, hn::Ge(least, hn::Zero(d)));
-    found +=
-        static_cast<std::int32_t>(hn::CompressStore(hn::Iota(di, block), seen, di, inside + found));
+    const Packing<DI> packing(seen);
+    packing.Store(CountFrom(block), inside + found);
+    found += packing.count();
   }
   for (; block < count; ++block) {
     const std::int32_t* b = coordinates + 3 * std::ptrdiff_t{block};
