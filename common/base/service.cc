@@ -1,5 +1,6 @@
 #include "common/base/service.h"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -94,6 +95,8 @@ void UseSmallPages() {
   // A kernel without huge pages has nothing to be asked for.
   ::prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
 }
+
+void ShareFreedMemory() { mallopt(M_ARENA_MAX, 1); }
 
 StopSignal::StopSignal() : signals_(StopSignals()) {
   IgnoreBrokenPipes();

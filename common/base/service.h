@@ -34,9 +34,14 @@ std::optional<std::chrono::microseconds> WatchdogInterval();
 void IgnoreBrokenPipes();
 
 /// From now on memory is taken in pages of 4 KB only, also by programs that this one starts. With
-/// transparent huge pages for all (the kernel's default on Debian) each of a small daemon's arenas
-/// holds 2 MB where it needs a few hundred KB.
+/// transparent huge pages for all (the kernel's default on Debian) a small daemon holds 2 MB where
+/// it needs a few hundred KB.
 void UseSmallPages();
+
+/// From now on what one thread frees is there for all. By default most threads have an arena each,
+/// and a process holds the sum of what each of them needed most, at whatever time. For programs
+/// whose threads take memory seldom; to be called before there are any.
+void ShareFreedMemory();
 
 /// Turns SIGTERM, SIGINT and SIGHUP (a terminal or ssh session that is gone; not under nohup) into
 /// a stop token, and ignores broken pipes. Create it in main before any other thread, so that all

@@ -18,8 +18,8 @@ namespace {
 // Blocks below this size come from the heap, which keeps them, instead of from the kernel each
 // time.
 constexpr int kMmapThresholdBytes = 32 << 20;
-// Freed memory at the heap's end goes back to the kernel only beyond this, so that frames do not
-// fault their pages in again.
+// Freed memory at the heap's end goes back to the kernel at once only beyond this, so frames do
+// not fault their pages in again. What stays goes back every ten seconds (FreedMemory).
 constexpr int kTrimThresholdBytes = 256 << 20;
 
 LogLevel LevelOf(std::uint32_t category) {

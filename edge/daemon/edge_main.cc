@@ -237,6 +237,7 @@ int Main(int argc, char** argv) {
   const SystemClock clock{};
   const TransportEnvironment environment(clock);
   UseSmallPages();
+  ShareFreedMemory();
   const StopSignal signal;
   return RunEdge(options, environment, clock, signal);
 }

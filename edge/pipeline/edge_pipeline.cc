@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/base/freed_memory.h"
 #include "common/base/log.h"
 #include "common/base/processor_time.h"
 #include "edge/options/edge_options.pb.h"
@@ -316,7 +317,9 @@ void EdgePipeline::QueueForCodec(FrameToEncode frame, const std::stop_token& sto
 }
 
 void EdgePipeline::Encode(const std::stop_token& stop) {
+  FreedMemory freed;
   while (std::optional<FrameToEncode> frame = codec_queue_.Pop(stop)) {
+    freed.GiveBackIfDue(clock_.SteadyNow());
     auto& content = frame->encoded.content;
     if (auto* depth = std::get_if<EncodedDepthFrame>(&content))
       depth->image = depth_encoder_.Encode(frame->pixels);

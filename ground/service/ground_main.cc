@@ -110,6 +110,7 @@ int Main(int argc, char** argv) {
   }
   *options.mutable_thermal() = WithAnglesOfMaterial(options.thermal());
   LOG(Ground, Debug) << "effective configuration:\n" << ToTextProto(options);
+  ShareFreedMemory();
   StopSignal signal;
   const SystemClock clock{};
   const TransportEnvironment environment(clock);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/exit_deadline.h"
+#include "common/base/freed_memory.h"
 #include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/base/pause.h"
@@ -296,12 +297,14 @@ void GroundService::GuardUntilStopped() {
   // are enough, and cost nothing.
   constexpr Nanoseconds kTick = 200ms;
   StatusReporter status(clock_);
+  FreedMemory freed;
   const std::stop_token stop = signal_.token();
   for (Pause(stop, kTick); !stop.stop_requested(); Pause(stop, kTick)) {
     FeedWatchdog();
     FollowNetwork();
     output_folder_.Tend(clock_.SteadyNow());
     status.Report(Situation(reported_problem_));
+    freed.GiveBackIfDue(clock_.SteadyNow());
   }
 }
 

@@ -338,8 +338,7 @@ class EdgeLoadTest : public ::testing::Test {
   /// larger a part than others took of the processors.
   void ExpectReceived(const std::string& received, const MachineLoad& load) {
     const double fraction = load.excused_fraction();
-    unsigned long depth = 0;
-    unsigned long thermal = 0;
+    unsigned long depth = 0, thermal = 0;
     const std::size_t at = received.find("received depth=");
     ASSERT_NE(at, std::string::npos) << received;
     ASSERT_EQ(
@@ -371,6 +370,7 @@ class EdgeLoadTest : public ::testing::Test {
 
 TEST_F(EdgeLoadTest, EachFrameIsAccountedForAndMemoryIsBounded) {
   UseSmallPages();  // As isotherm-edge does.
+  ShareFreedMemory();
   Process sink({FRAME_SINK, {std::to_string(OwnDomain())}, {}, {}});
   ASSERT_TRUE(sink.WaitForOutput("listening", kPatience));
   ASSERT_NO_FATAL_FAILURE(StartPublishing());
