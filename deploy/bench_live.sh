@@ -119,6 +119,7 @@ awk '
     show("depth frames received", "", "frames.depth.in")
     show("  tracked", "", "frames.depth.tracked")
     show("  not integrated to keep up", "", "frames.depth.not_integrated_behind")
+    show("  not integrated, pose uncertain", "", "frames.depth.not_integrated_uncertain")
     show("thermal frames received", "", "frames.thermal.in")
     show("  left out to keep up", "", "frames.thermal.left_out_by_reason.behind")
     show("  longest time without one for that reason", "s", "frames.thermal.longest_pause_s")

@@ -65,7 +65,8 @@ std::optional<OdometryPrior::Prediction> OdometryPrior::Predict(const StampedMap
       options_.expert().drift_ratio() * RotationAngle(RigidTransform::Identity(), motion);
   // Of the motion since the first such frame: of both its ends.
   result.error.rotation_noise_rad = std::numbers::sqrt2 * to->rotation_noise_rad;
-  if (from->has_position && to->has_position) {
+  result.has_position = from->has_position && to->has_position;
+  if (result.has_position) {
     result.error.translation_growth_m =
         options_.expert().drift_ratio() * motion.translation().norm();
     result.error.translation_noise_m = std::numbers::sqrt2 * to->position_noise_m;

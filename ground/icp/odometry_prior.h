@@ -37,6 +37,7 @@ class OdometryPrior {
   struct Prediction {
     RigidTransform T_map_depth;
     PriorError error;
+    bool has_position = false;  ///< The source told it; else the translation is inertial.
   };
   /// Predicts where the depth camera is at `time` if it moved from `last`, the newest tracked pose,
   /// as the source says. `inertial` and its error stand in for what the source does not measure.

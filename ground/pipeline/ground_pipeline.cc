@@ -228,7 +228,19 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, TrackedFrame& frame) 
   return integrates;
 }
 
+bool GroundPipeline::IsCertain() const {
+  // As long as nothing has ever held the rig there is nothing to contradict. A source of odometry
+  // has its drift whatever is in view, and the model has it then.
+  return gate_.bootstrapping() || !tracker_.is_speed_known() || tracker_.is_held_by_odometry() ||
+         tracker_.uncertainty().surface_sigma_m() <= atlas_.active().tsdf->truncation_distance_m();
+}
+
 bool GroundPipeline::IsDue(const TrackedFrame& frame) {
+  slides_ = !IsCertain();
+  if (slides_) {
+    ++counts_.depth_uncertain;
+    return false;
+  }
   const int stride = IntegrationStride(load_shedding_);
   if (stride > 1 && turn_++ % stride != 0) {
     ++counts_.depth_behind;
@@ -288,6 +300,7 @@ DepthReport GroundPipeline::Report(const TrackedFrame& frame, bool integrated) c
   report.tracked = frame.is_believed();
   report.unconfirmed = frame.outcome == TrackedFrame::Outcome::kUnconfirmed;
   report.integrated = integrated;
+  report.slides = report.tracked && slides_;
   report.tracking = frame.tracking;
   if (report.tracked) report.pose = tracker_.pose();
   return report;

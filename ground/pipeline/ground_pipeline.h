@@ -83,8 +83,12 @@ class GroundPipeline {
   void FuseThermal(const PreparedDepth& depth, const TrackedFrame& frame);
   DepthReport Report(const TrackedFrame& frame, bool integrated) const;
 
-  /// Returns whether this frame is to be integrated: its turn has come, and the rig moved as it
-  /// should.
+  /// Returns whether the pose is known to within the band that a surface takes. Along a direction
+  /// that the view does not hold it may be anywhere after a while, and what was added there would
+  /// not meet what the model has of the same surface.
+  bool IsCertain() const;
+  /// Returns whether this frame is to be integrated: the pose is certain, its turn has come, and
+  /// the rig moved as it should.
   bool IsDue(const TrackedFrame& frame);
   /// False if the model is still empty: nothing of the surface lies in the volume.
   bool AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth);
@@ -128,7 +132,8 @@ class GroundPipeline {
   std::vector<PoseCertainty> certainties_;  ///< One for each tracked frame, in order of time.
   bool thermal_has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   LoadShedding load_shedding_ = LoadShedding::kNone;
-  int turn_ = 0;  ///< To be integrated, with kEverySecond and kEveryFourth.
+  bool slides_ = false;  ///< DepthReport::slides of the last frame that was tracked.
+  int turn_ = 0;         ///< To be integrated, with kEverySecond and kEveryFourth.
   std::optional<ThermalStage> thermal_stage_;  ///< Only if the rig's thermal frames can be fused.
 };
 

@@ -174,6 +174,7 @@ Json DescribeDepth(const ScanCounts& counts) {
   depth["relocalisations"] = counts.relocalisations;
   depth["integrated"] = counts.depth_integrated;
   depth["not_integrated_behind"] = counts.depth_behind;
+  depth["not_integrated_uncertain"] = counts.depth_uncertain;
   depth["refused"] = counts.depth_refused;
   depth["lost"] = Sum(counts.depth_lost);
   DescribeReasons(counts.depth_lost, "lost_by_reason", depth);

@@ -48,6 +48,7 @@ std::string IncidentsText(const ScanCounts& counts) {
   add(counts.depth_repeated, "repeated");
   add(counts.depth_degraded,
       "tracked by their motion before in some direction (a flat or round view does not tell it)");
+  add(counts.depth_uncertain, "not integrated, because that had gone on for too long");
   add(counts.relocalisations, "times found again after a loss");
   add(counts.depth_unconfirmed, "not used while that was confirmed");
   add(counts.depth_behind, "not integrated to keep up");

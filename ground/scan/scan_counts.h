@@ -37,6 +37,7 @@ struct ScanCounts {
   std::uint64_t depth_unconfirmed = 0;  ///< Found again, but not yet believed.
   std::uint64_t depth_integrated = 0;   ///< Some of the tracked ones.
   std::uint64_t depth_behind = 0;       ///< Not integrated for want of time.
+  std::uint64_t depth_uncertain = 0;    ///< Not integrated, because the pose was too uncertain.
   std::uint64_t depth_refused = 0;      ///< Frames of another size than the calibration's.
   EnumArray<LostReason, std::uint64_t> depth_lost;
   std::uint64_t relocalisations = 0;  ///< Times that the rig was found again after a loss.

@@ -116,6 +116,7 @@ TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
     if (result.tracked() && !odometry_.Contradicts(result, time, known)) {
       odometry_.Note(result, time, known, /*used=*/true);
       odometry_error_ = odometry->error;
+      is_position_given_ = odometry->has_position;
       return result;
     }
   }
@@ -194,6 +195,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
   TrackingResult result;
   found_elsewhere_ = false;
   odometry_error_.reset();
+  is_position_given_ = false;
   if (state_ == State::kLost) {
     result = LookAround(depth, here, searched, pool);
     if (!result.tracked()) return result;

@@ -73,6 +73,12 @@ class RigTracker {
   const ModelView& view() const { return view_; }
   const MotionHistory& motion() const { return motion_; }
   const PoseUncertainty& uncertainty() const { return uncertainty_; }
+  /// Returns whether the speed was ever measured in all directions since the scan began, or since
+  /// the rig was lost.
+  bool is_speed_known() const { return speed_is_known_; }
+  /// Returns whether the last frame started where odometry with positions had it, which holds what
+  /// the view does not.
+  bool is_held_by_odometry() const { return is_position_given_; }
   const OdometryPrior& external_odometry() const { return odometry_; }
 
  private:
@@ -114,6 +120,7 @@ class RigTracker {
   MotionHistory motion_;
   OdometryPrior odometry_;
   std::optional<PriorError> odometry_error_;  ///< If the newest frame started from odometry poses.
+  bool is_position_given_ = false;            ///< By them, too.
   PoseUncertainty uncertainty_;
   Usual usual_;
   State state_ = State::kFollowing;

@@ -99,6 +99,8 @@ class Tracker {
   /// The last poses, in the active sub-map; none while the rig is lost.
   const MotionHistory& motion() const { return rig_tracker_.motion(); }
   const PoseUncertainty& uncertainty() const { return rig_tracker_.uncertainty(); }
+  bool is_speed_known() const { return rig_tracker_.is_speed_known(); }
+  bool is_held_by_odometry() const { return rig_tracker_.is_held_by_odometry(); }
   const OdometryPrior& external_odometry() const { return rig_tracker_.external_odometry(); }
   const Trajectory& trajectory() const { return trajectory_; }
   /// Returns how often the rig was found again.

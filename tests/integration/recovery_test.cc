@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <iostream>
+#include <numbers>
 #include <random>
+#include <utility>
 
 #include "common/base/units.h"
 #include "common/simulation/scene_builder.h"
@@ -255,6 +258,8 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
     const DepthReport report = scan.Show(pose(i));
     ASSERT_TRUE(report.tracked) << i << ' ' << ToString(report.tracking.lost);
     if (report.tracking.quality() == TrackingQuality::kDegraded) ++degraded;
+    // Nothing has ever held the rig: there is nothing that what is added could contradict.
+    ASSERT_FALSE(report.slides) << i;
   }
   // Without any structure the velocity is not known either: the prior is at rest.
   const RigidTransform truth = pose(30 * kSeconds - 1);
@@ -269,6 +274,59 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   EXPECT_LT(RotationAngle(end, truth), 1.0 * kRadPerDeg);
   EXPECT_GE(degraded, 30 * kSeconds - 10);
   EXPECT_GT(scan.pipeline().model().uncertainty.surface_sigma_m(), drift / 3.0);
+}
+
+/// Away from balls and cartons along a bare wall, and back: what is seen where the rig may have
+/// slid is not added, and the scan goes on where it is held again.
+TEST(DegenerateSceneTest, F54WhereTheViewSlidesNothingIsAddedToTheModel) {
+  SceneBuilder builder(23.0);
+  builder.UseMaterial({});
+  builder.Box("wall", {-5.0, -5.0, 0.9}, {5.0, 5.0, 1.0});
+  builder.Sphere("ball", {0.0, 0.4, 0.85}, 0.10);
+  builder.Sphere("lower ball", {0.15, 0.65, 0.88}, 0.08);
+  builder.RotatedBox("carton", {-0.15, 0.6, 0.85}, {0.2, 0.15, 0.15}, {20, 30, 10});
+  RecoveryScan scan(builder.Build("balls before a wall"), kSeed);
+  VolumeOptions& volume = *scan.options().mutable_volume();
+  volume.set_size_x_m(2.4);
+  volume.mutable_expert()->set_min_x_m(-0.6);
+  // Five seconds each way, slow enough to be integrated, with a rest at the turning point.
+  constexpr int kFrames = 300;
+  const auto pose = [](int i) {
+    const double x = 0.45 * (1.0 - std::cos(2.0 * std::numbers::pi * i / kFrames));
+    return MakeTransform({x, 0.5, 0.3}, Eigen::Quaterniond::Identity());
+  };
+  scan.Start(pose(0));
+  const auto sum_of_voxels = [&scan] {
+    const TsdfVolume& tsdf = scan.pipeline().model().tsdf();
+    std::uint64_t sum = 0;
+    for (std::int32_t block = 0; block < tsdf.block_count(); ++block) {
+      for (const TsdfVoxel voxel : tsdf.voxels(block)) sum = 31 * sum + voxel.bits;
+    }
+    return sum;
+  };
+  int slid = 0, last_slid = 0, compared = 0;
+  std::uint64_t sum = 0;
+  for (int i = 0; i <= kFrames; ++i) {
+    const DepthReport report = scan.Show(pose(i));
+    if (!report.slides) continue;
+    EXPECT_FALSE(report.integrated) << i;
+    const std::uint64_t sum_before = std::exchange(sum, sum_of_voxels());
+    if (slid > 0 && last_slid == i - 1) {
+      EXPECT_EQ(sum, sum_before) << i;
+      ++compared;
+    }
+    ++slid;
+    last_slid = i;
+  }
+  const ScanCounts& counts = scan.pipeline().model().counts;
+  std::cout << "slid in " << slid << " frames, the last " << last_slid << "; integrated "
+            << counts.depth_integrated << ", off by " << 1e3 * scan.PositionError(pose(kFrames))
+            << " mm in the end\n";
+  EXPECT_GT(slid, 10);
+  EXPECT_GT(compared, 5);
+  EXPECT_EQ(counts.depth_uncertain, static_cast<std::uint64_t>(slid));
+  EXPECT_LT(last_slid, kFrames - 10) << "held again";
+  EXPECT_LT(scan.PositionError(pose(kFrames)), kWrongPose);
 }
 
 }  // namespace
