@@ -66,7 +66,7 @@ int Run(const ExperimentArguments& arguments) {
   bool all_met = true;
   std::size_t number = 0;
   for (const Experiment* experiment : *chosen) {
-    // Each takes 5 to 30 s (guidance: minutes), and says nothing meanwhile.
+    // Each takes 5 to 30 s, guidance and link longer; only guidance says how far it is.
     fmt::print(stderr, "experiment {} of {}: {} ...\n", ++number, chosen->size(), experiment->name);
     const Result<ExperimentReport> report = experiment->run(pool);
     if (!report) return Fail(report.error().WithContext(experiment->name));

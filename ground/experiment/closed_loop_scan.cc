@@ -23,15 +23,6 @@ constexpr double kHandWidth_m = 0.05;
 
 enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels };
 
-/// Half as many pixels per disparity: noise and steps in metres as at full size.
-SimulatedDepthOptions DepthCameraAtHalfSize() {
-  SimulatedDepthOptions options;
-  SimulatedDepthExpertOptions& expert = *options.mutable_expert();
-  expert.set_disparity_noise_px(0.5 * expert.disparity_noise_px());
-  expert.set_disparity_step_px(0.5 * expert.disparity_step_px());
-  return options;
-}
-
 /// Nothing is said about temperatures: one ray per pixel will do.
 SimulatedThermalOptions SharpThermalCamera() {
   SimulatedThermalOptions options = IdealThermalCamera({});
@@ -46,7 +37,7 @@ class ClosedLoop {
              std::unique_ptr<GroundPipeline> pipeline)
       : setup_(setup),
         rig_(rig),
-        depth_sensor_(*rig_.depth, IdealDepthCamera(DepthCameraAtHalfSize())),
+        depth_sensor_(*rig_.depth, IdealDepthCamera(SimulatedDepthOptions())),
         thermal_sensor_(*rig_.thermal, SharpThermalCamera()),
         pipeline_(std::move(pipeline)),
         feedback_(options, {.session = 1, .rig = rig_, .depth = {}, .thermal = {}}),
@@ -146,7 +137,6 @@ class ClosedLoop {
 
 Rig RigForClosedLoop() {
   Rig rig = DefaultSimulatedRig();
-  rig.depth = rig.depth->Downscaled(1);
   rig.depth_scale = SimulatedDepthExpertOptions().depth_scale();
   rig.thermal_scale = ScaleOf(SimulatedThermalOptions());
   return rig;
@@ -157,9 +147,6 @@ GroundOptions OptionsForClosedLoop() {
   constexpr double kUsualRate_hz = 30.0;
   constexpr double kSlower = kUsualRate_hz / kFrameRate_hz;
   GroundOptions options;
-  options.mutable_volume()->set_voxel_size_m(0.003);
-  // As many rays as with images of full size.
-  options.mutable_raycast()->mutable_expert()->set_halvings(0);
   TsdfExpertOptions& tsdf = *options.mutable_tsdf()->mutable_expert();
   tsdf.set_max_step_m(kSlower * tsdf.max_step_m());
   tsdf.set_max_step_deg(kSlower * tsdf.max_step_deg());

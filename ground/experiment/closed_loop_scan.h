@@ -15,13 +15,13 @@ namespace isotherm {
 
 /// Returns the rig of a scan in which somebody moves the cameras and looks at the feedback, so that
 /// the next view is not known before. Depth and thermal frames are taken at the same times, twenty
-/// times a second, the depth images at half size, to keep a scan of minutes affordable. The rig
-/// knows the detector's time constant, by which smear is assessed; images are rendered sharp, since
-/// their temperatures are not looked at.
+/// times a second, to keep a scan of minutes affordable. The rig knows the detector's time
+/// constant, by which smear is assessed; images are rendered sharp, since their temperatures are
+/// not looked at.
 Rig RigForClosedLoop();
 
-/// Defaults for such frames: voxels of 3 mm, and the limits of motion from frame to frame that mean
-/// the same speed as the defaults do at 30 Hz.
+/// Defaults, but for the limits of motion from frame to frame, which mean the same speed as the
+/// defaults do at 30 Hz.
 GroundOptions OptionsForClosedLoop();
 
 /// Says what an operator is to scan, and how.
@@ -37,7 +37,7 @@ struct ClosedLoopSetup {
 
 /// Holds how the scan went.
 struct ClosedLoopLog {
-  static constexpr double kSampleInterval_s = 10.0;
+  static constexpr double kSampleInterval_s = 30.0;
   static constexpr std::size_t kAdviceKinds = 8;  ///< Number of values of Advice.
 
   std::optional<double> done_s;  ///< When the feedback first said so, from the first frame.

@@ -24,6 +24,10 @@ constexpr double kRecoveryTime_s = 1.5;
 constexpr double kAtWaypoint_m = 0.01;
 constexpr double kAtWaypoint_rad = 2.0 * kRadPerDeg;
 
+/// Whoever was lost so often on the way to a waypoint goes on to the one after it: once may be
+/// chance; to try for ever is what nobody does.
+constexpr int kLossesPerWaypoint = 2;
+
 /// How far a person goes at a time who is told "closer" or "farther".
 constexpr double kHandbreadth_m = 0.05;
 
@@ -109,7 +113,9 @@ ScriptedOperator::Instruction ScriptedOperator::Understand(
                           .is_urgent = false,
                           .hold_still = Has(feedback, Advice::kHoldForNuc) || feedback.done,
                           .slower = Has(feedback, Advice::kSlower)};
-  if (feedback.tracking_state == TrackingState::kLost) {
+  // The same where the view slides.
+  if (feedback.tracking_state == TrackingState::kLost ||
+      (Has(feedback, Advice::kGoBackToRelocalise) && !feedback.T_depth_next)) {
     instruction.is_urgent = true;
     instruction.has_goal = feedback.T_world_depth_next.has_value();
     if (instruction.has_goal) instruction.T_world_goal = *feedback.T_world_depth_next;
@@ -136,11 +142,18 @@ void ScriptedOperator::Hear(const Feedback& feedback, const RigidTransform& T_wo
 void ScriptedOperator::React() {
   while (!heard_.empty() && heard_.front().due_s <= time_s_) {
     const RigidTransform T_world_goal = current_.T_world_goal;
+    if (heard_.front().is_urgent && !current_.is_urgent) NoteLoss();
     current_ = heard_.front();
     heard_.pop_front();
     // Who is told nothing new goes on to where they were sent before.
     if (!current_.has_goal) current_.T_world_goal = T_world_goal;
   }
+}
+
+void ScriptedOperator::NoteLoss() {
+  if (next_waypoint_ == path_.size() || ++losses_ < kLossesPerWaypoint) return;
+  ++next_waypoint_;
+  losses_ = 0;
 }
 
 void ScriptedOperator::Go(double step_s, const RigidTransform& T_world_goal, double speed_m_s,
@@ -156,6 +169,7 @@ void ScriptedOperator::FollowPath(double step_s) {
       TranslationDistance(hand_.T_world_depth(), waypoint.T_world_depth) < kAtWaypoint_m &&
       RotationAngle(hand_.T_world_depth(), waypoint.T_world_depth) < kAtWaypoint_rad) {
     ++next_waypoint_;
+    losses_ = 0;
   }
 }
 

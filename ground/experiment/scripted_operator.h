@@ -60,7 +60,8 @@ struct Obedience {
 /// A person with a rig in the hand, as a script: follows the next view, goes back when lost, slows
 /// down when told to, holds still while the camera corrects itself, comes closer or steps back
 /// where no view is proposed, and does all this late and swaying. What the person heeds less of
-/// follows a fixed path. The same for the same seed. Thread-compatible.
+/// follows a fixed path, and leaves a waypoint out on the way to which the rig was lost twice. The
+/// same for the same seed. Thread-compatible.
 class ScriptedOperator {
  public:
   ScriptedOperator(const OperatorTraits& traits, const Obedience& obedience,
@@ -76,7 +77,8 @@ class ScriptedOperator {
   /// The true pose of the depth camera.
   RigidTransform T_world_depth() const;
   double time_s() const { return time_s_; }
-  /// The fixed path was gone to its end. A path without waypoints never is.
+  /// The fixed path was gone to its end, but for what was left out. A path without waypoints never
+  /// is.
   bool path_complete() const { return !path_.empty() && next_waypoint_ == path_.size(); }
 
  private:
@@ -94,6 +96,8 @@ class ScriptedOperator {
   Instruction Understand(const Feedback& feedback, const RigidTransform& T_world_depth) const;
   /// Does what was heard long enough ago.
   void React();
+  /// The rig was lost, on the way to a waypoint maybe.
+  void NoteLoss();
   void FollowPath(double step_s);
   void Go(double step_s, const RigidTransform& T_world_goal, double speed_m_s,
           double rotation_rate_deg_s);
@@ -107,6 +111,7 @@ class ScriptedOperator {
   std::deque<Instruction> heard_;
   Instruction current_;
   std::size_t next_waypoint_ = 0;
+  int losses_ = 0;      ///< Losses on the way to the next waypoint.
   double haste_ = 1.0;  ///< Fraction of the full speed that the person goes at now.
 };
 

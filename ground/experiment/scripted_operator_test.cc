@@ -82,7 +82,8 @@ class ScriptedOperatorTest : public ::testing::Test {
   /// Goes on without hearing anything.
   static Extremes Let(ScriptedOperator& person, double duration_s) {
     MotionMeter meter;
-    for (double s = 0.0; s < duration_s; s += kStep_s) {
+    const auto steps = static_cast<int>(std::ceil(duration_s / kStep_s));
+    for (int i = 0; i < steps; ++i) {
       person.Advance(kStep_s);
       meter.Add(person.T_world_depth());
     }
@@ -181,6 +182,36 @@ TEST_F(ScriptedOperatorTest, GoesWhereTrackingLastWorkedEvenFromAPath) {
   person.Hear(lost, person.T_world_depth());
   Let(person, 5.0);
   EXPECT_LT(TranslationDistance(person.T_world_depth(), Pose(0.0, 0.1, 0.0)), 0.001);
+}
+
+TEST_F(ScriptedOperatorTest, LeavesAWaypointOutOnTheWayToWhichTheRigWasLostTwice) {
+  const RigidTransform beyond = Pose(0.0, 0.0, 0.3);
+  ScriptedOperator person = Person(SteadyPerson(), {.next_view = false, .slower = false},
+                                   {{Pose(5.0, 0.0, 0.0), 0.3, 17.0}, {beyond, 0.3, 17.0}});
+  Feedback lost;
+  lost.tracking_state = TrackingState::kLost;
+  lost.T_world_depth_next = Pose(0.0, 0.0, 0.0);
+  const auto lose_for = [&](int tenths_s) {
+    for (int i = 0; i < tenths_s; ++i) {
+      person.Hear(lost, person.T_world_depth());
+      Let(person, 0.1);
+    }
+  };
+  const auto find_for = [&](double duration_s) {
+    Feedback found;
+    found.tracking_state = TrackingState::kTracked;
+    person.Hear(found, person.T_world_depth());
+    Let(person, duration_s);
+  };
+  find_for(1.0);
+  lose_for(60);
+  find_for(4.0);
+  EXPECT_GT(person.T_world_depth().translation().x(), 0.5) << "once, and goes on to it";
+  EXPECT_FALSE(person.path_complete());
+  lose_for(80);
+  find_for(4.0);
+  EXPECT_LT(TranslationDistance(person.T_world_depth(), beyond), 0.01);
+  EXPECT_TRUE(person.path_complete());
 }
 
 TEST_F(ScriptedOperatorTest, ComesCloserAndStepsBackWhereNoViewIsProposed) {

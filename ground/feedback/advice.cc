@@ -111,7 +111,7 @@ void OperatorAdviser::Trigger(AdviceKind kind, double value, double on, double o
 }
 
 void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSituation& s) {
-  if (s.tracking_lost) {
+  if (s.tracking_lost || (s.slides && !s.nuc_running)) {
     Due(AdviceKind::kGoBack) = true;
   } else {
     // Negative, since here less is worse and Trigger fires upwards.
@@ -211,6 +211,10 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
   switch (kind) {
     case AdviceKind::kGoBack:
       if (s.tracking_lost) return "tracking is lost: return to where it worked";
+      if (s.slides) {
+        return "the view slides on itself, nothing is added to the model: show the cameras edges "
+               "and corners that it has";
+      }
       return "no surface of the model in view: point at the object";
     case AdviceKind::kHoldForNuc:
       return "the thermal camera is correcting itself: hold still";

@@ -29,6 +29,7 @@ enum class AdviceKind {
 /// Holds what advice depends on besides the coverage of the view.
 struct ScanSituation {
   bool tracking_lost = false;
+  bool slides = false;       ///< DepthReport::slides.
   bool nuc_running = false;  ///< Shutter about to close, closed or settling.
   double speed_m_s = 0.0;    ///< Speed of the depth camera.
   double rotation_rate_deg_s = 0.0;

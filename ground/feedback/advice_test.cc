@@ -15,7 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 
 /// Between messages at 10 Hz.
 constexpr Nanoseconds kPeriod = 100ms;
@@ -101,6 +100,16 @@ TEST_F(AdviceTest, WhatMakesTheRestPointlessComesFirst) {
   situation_.tracking_lost = true;
   EXPECT_EQ(Next().kind, AdviceKind::kGoBack);
   EXPECT_THAT(Next().reason, HasSubstr("tracking is lost"));
+}
+
+TEST_F(AdviceTest, WhereTheViewSlidesNothingIsAddedAndThatIsSaid) {
+  situation_.slides = true;
+  EXPECT_EQ(Next().kind, AdviceKind::kGoBack);
+  EXPECT_THAT(Next().reason, HasSubstr("the view slides on itself, nothing is added to the model"));
+  situation_.tracking_lost = true;
+  EXPECT_THAT(Next().reason, HasSubstr("tracking is lost"));
+  situation_ = {};
+  EXPECT_EQ(Settled().kind, AdviceKind::kNone);
 }
 
 TEST_F(AdviceTest, TurningTooFastIsTooFast) {

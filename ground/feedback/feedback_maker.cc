@@ -106,17 +106,19 @@ std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
   return pose->T_world_depth;
 }
 
-/// Returns where tracking worked, in `world`, for a rig that is lost for so long; nullopt if that
-/// is not known. It is the last pose at first; who was not found there is sent back along the way
-/// they came.
-std::optional<RigidTransform> LastKnownPose(const ScanModel& scan, Nanoseconds lost_for) {
+/// Returns where tracking worked, in `world`, for a rig that is lost, or slides, since
+/// `known_until` and for so long; nullopt if that is not known. It is the last pose at first; who
+/// was not found there is sent back along the way they came.
+std::optional<RigidTransform> LastKnownPose(const ScanModel& scan, CaptureTime known_until,
+                                            Nanoseconds lost_for) {
   // Most losses end at the last pose within this time (a hand before the camera, a swing back).
   // Then the way back is shown as fast as it was gone.
   constexpr Nanoseconds kStay = std::chrono::seconds(2);
   const std::vector<StampedPose>& poses = scan.trajectory.poses();
   if (!poses.empty()) {
     const Nanoseconds back = std::max(Nanoseconds(0), lost_for - kStay);
-    auto pose = std::ranges::lower_bound(poses, poses.back().time - back, {}, &StampedPose::time);
+    auto pose = std::ranges::lower_bound(poses, std::min(poses.back().time, known_until) - back, {},
+                                         &StampedPose::time);
     return pose->T_world_depth;
   }
   const Atlas& atlas = scan.atlas;
@@ -134,20 +136,8 @@ FeedbackMaker::FeedbackMaker(const GroundOptions& options, const RigDescription&
       T_depth_thermal_(rig.rig.T_thermal_depth ? rig.rig.T_thermal_depth->inverse()
                                                : RigidTransform::Identity()),
       limits_(CompleteLimits(options.thermal(), rig.rig.thermal_sensor)),
-      adviser_(options.feedback(), limits_) {}
-
-SurfaceAreas FeedbackMaker::areas() const {
-  SurfaceAreas sum;
-  for (const auto& [map, coverage] : coverages_) sum += coverage.areas();
-  return sum;
-}
-
-ModelCoverage& FeedbackMaker::ActiveCoverage(const ScanModel& scan) {
-  return coverages_
-      .try_emplace(scan.atlas.active_index(),
-                   static_cast<float>(options_.export_().expert().min_weight()))
-      .first->second;
-}
+      adviser_(options.feedback(), limits_),
+      coverage_(static_cast<float>(options.export_().expert().min_weight())) {}
 
 ViewPlanner* FeedbackMaker::Planner(const ScanModel& scan) {
   if (!rig_.depth || !rig_.thermal || !rig_.T_thermal_depth) return nullptr;
@@ -159,16 +149,19 @@ ViewPlanner* FeedbackMaker::Planner(const ScanModel& scan) {
 
 double FeedbackMaker::OutOfReach() const {
   double sum_m2 = 0.0;
-  for (const auto& [map, planner] : planners_) {
-    const auto coverage = coverages_.find(map);
-    if (coverage != coverages_.end()) sum_m2 += planner.OutOfReach(coverage->second);
-  }
+  coverage_.ForEachThatCounts([&](int map, const ModelCoverage& coverage) {
+    const auto planner = planners_.find(map);
+    if (planner != planners_.end()) sum_m2 += planner->second.OutOfReach(coverage);
+  });
   return sum_m2;
 }
 
 double FeedbackMaker::Unseen() const {
   double max_m2 = 0.0;
-  for (const auto& [map, planner] : planners_) max_m2 = std::max(max_m2, planner.Unseen());
+  coverage_.ForEachThatCounts([&](int map, const ModelCoverage&) {
+    const auto planner = planners_.find(map);
+    if (planner != planners_.end()) max_m2 = std::max(max_m2, planner->second.Unseen());
+  });
   return max_m2;
 }
 
@@ -197,7 +190,7 @@ Image<float> FeedbackMaker::Smear(const ScanModel& scan) const {
 void FeedbackMaker::NoteWay(const FeedbackMoment& moment, const ScanModel& scan) {
   const CaptureTime now = moment.header.capture_time;
   const auto planner = planners_.find(scan.atlas.active_index());
-  if (!moment.report.tracked) {
+  if (!moment.report.tracked || moment.report.slides) {
     // The rig was lost at the view or on the way to it, so the view is to blame; elsewhere it is
     // not.
     const bool is_there = way_s_ && *way_s_ <= kThere_s;
@@ -222,6 +215,7 @@ void FeedbackMaker::NoteWay(const FeedbackMoment& moment, const ScanModel& scan)
 ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   ScanSituation situation;
   situation.tracking_lost = !moment.report.tracked;
+  situation.slides = moment.report.slides;
   situation.nuc_running = moment.nuc_running;
   situation.is_on_the_way = is_on_the_way_;
   situation.ground_is_behind = moment.ground_is_behind;
@@ -232,11 +226,8 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
     situation.max_rotation_rate_deg_s =
         options_.tsdf().expert().max_step_deg() / moment.frame_interval_s;
   }
-  const bool complete = !coverages_.empty() && std::ranges::all_of(coverages_, [](const auto& c) {
-    return c.second.complete();
-  });
   const SurfaceAreas all = areas();
-  if (!complete || !(all.total_m2() > 0.0)) return situation;
+  if (!coverage_.complete() || !(all.total_m2() > 0.0)) return situation;
   situation.out_of_reach_m2 = std::min(OutOfReach(), all.total_m2() - all.good_m2);
   // What may be beyond the ends of the known surface is not measured well yet.
   const double within_reach_m2 = all.total_m2() - situation.out_of_reach_m2 + Unseen();
@@ -246,8 +237,9 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
 
 void FeedbackMaker::AddNextPose(const DepthReport& report, const ScanModel& scan,
                                 Feedback& feedback) const {
-  if (!report.tracked) {
-    feedback.T_world_depth_next = LastKnownPose(scan, feedback.capture_time - last_tracked_);
+  if (!report.tracked || report.slides) {
+    feedback.T_world_depth_next =
+        LastKnownPose(scan, last_known_, feedback.capture_time - last_known_);
     return;
   }
   const auto planner = planners_.find(report.pose.map);
@@ -267,7 +259,8 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   feedback.capture_time = moment.header.capture_time;
   feedback.tracking_state = StateOf(moment.report);
   // A rig that was never tracked is lost from its first frame on.
-  if (moment.report.tracked || messages_ == 1) last_tracked_ = moment.header.capture_time;
+  if ((moment.report.tracked && !moment.report.slides) || messages_ == 1)
+    last_known_ = moment.header.capture_time;
   if (const auto pose =
           moment.report.tracked ? scan.atlas.ToWorld(moment.report.pose) : std::nullopt) {
     feedback.T_world_depth = pose->T_world_depth;
@@ -282,7 +275,8 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   feedback.advice = ToWire(advice.kind);
   feedback.advice_reason = std::move(advice.reason);
   feedback.done = adviser_.done();
-  is_measuring_ = moment.report.tracked && !moment.nuc_running && !feedback.done;
+  is_measuring_ =
+      moment.report.tracked && !moment.report.slides && !moment.nuc_running && !feedback.done;
   AddNextPose(moment.report, scan, feedback);
   if (options_.feedback().expert().image_width_px() > 0 && view_.width() > 0) {
     feedback.image = EncodeWithin(
@@ -292,24 +286,42 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   return feedback;
 }
 
+void FeedbackMaker::NoteViewElsewhere(const Atlas& atlas, ViewPlanner& planner) {
+  if (!atlas.active().joined) return;
+  auto& [map, view] = next_view_elsewhere_;
+  if (map >= atlas.size()) map = 0;
+  const std::vector<RigidTransform>& views = atlas.map(map).relocaliser->keyframes().poses();
+  if (map == atlas.active_index() || !atlas.map(map).joined || view >= views.size()) {
+    ++map;
+    view = 0;
+    return;
+  }
+  planner.NoteSeen(atlas.active().T_world_map.inverse() * atlas.map(map).T_world_map * views[view],
+                   atlas.active().tsdf->grid());
+  ++view;
+}
+
 void FeedbackMaker::ThinkAhead(const ScanModel& scan) {
-  ModelCoverage& coverage = ActiveCoverage(scan);
-  // Looking at blocks that are on the disk would bring them back: those near the rig hardly are.
-  const bool has_spilled = scan.spiller.spilled() > 0;
   const VoxelGrid& grid = scan.tsdf().grid();
   const Eigen::Vector3d rig_vox = grid.ToVoxel(scan.view.T_map_depth.translation());
   const double reach_vox = kResidentReach_m / grid.voxel_size_m;
-  coverage.Update(
-      scan.tsdf(), scan.thermal(),
-      [&](std::int32_t block) {
-        const GridIndex first = scan.tsdf().block_coordinates(block) * kBlockSide;
-        return has_spilled && (first.cast<double>() - rig_vox).norm() > reach_vox;
-      },
-      options_.feedback().expert().blocks_per_message(), scan.pool);
+  const bool spills = !options_.volume().spill_dir().empty();
+  const bool has_spilled = scan.spiller.spilled() > 0;
+  // Looking at blocks that are on the disk would bring them back: those near the rig hardly are,
+  // and of sub-maps that the rig has left all may be.
+  const auto is_spilled = [&](const TsdfVolume& tsdf, std::int32_t block) {
+    if (&tsdf != &scan.tsdf()) return spills;
+    if (!has_spilled) return false;
+    const GridIndex first = tsdf.block_coordinates(block) * kBlockSide;
+    return (first.cast<double>() - rig_vox).norm() > reach_vox;
+  };
+  coverage_.Update(scan.atlas, is_spilled, options_.feedback().expert().blocks_per_message(),
+                   scan.pool);
   ViewPlanner* planner = Planner(scan);
   if (planner == nullptr || scan.view.maps.width() == 0 || adviser_.done()) return;
-  planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, is_measuring_,
-                scan.pool);
+  NoteViewElsewhere(scan.atlas, *planner);
+  planner->Step(scan.tsdf(), scan.thermal(), *coverage_.Find(scan.atlas.active_index()),
+                scan.view.T_map_depth, is_measuring_, scan.pool);
 }
 
 }  // namespace isotherm

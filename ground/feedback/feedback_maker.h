@@ -5,7 +5,7 @@
 
 #include "common/messages/messages.h"
 #include "ground/feedback/advice.h"
-#include "ground/feedback/model_coverage.h"
+#include "ground/feedback/scan_coverage.h"
 #include "ground/feedback/view_planner.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/renderer/view_maps.h"
@@ -37,8 +37,8 @@ class FeedbackMaker {
   /// Goes on with the coverage of the whole model and with the search for the next view.
   void ThinkAhead(const ScanModel& scan);
 
-  /// Surface that several sub-maps share counts in each of them.
-  SurfaceAreas areas() const;
+  /// Surface that several sub-maps share counts once (ScanCoverage).
+  SurfaceAreas areas() const { return coverage_.areas(); }
   /// Enough of the whole surface is measured well.
   bool done() const { return adviser_.done(); }
   std::uint64_t messages() const { return messages_; }
@@ -55,9 +55,12 @@ class FeedbackMaker {
   /// lost on the way there, or there, gives the view up.
   void NoteWay(const FeedbackMoment& moment, const ScanModel& scan);
   void AddNextPose(const DepthReport& report, const ScanModel& scan, Feedback& feedback) const;
-  /// The coverage of the active sub-map, in whose coordinates the planner works too.
-  ModelCoverage& ActiveCoverage(const ScanModel& scan);
+  /// Returns the planner of the active sub-map, which works in its coordinates; nullptr without a
+  /// calibrated thermal camera.
   ViewPlanner* Planner(const ScanModel& scan);
+  /// Takes that the rig has looked from the next view, in turns, from which another sub-map was
+  /// scanned. `planner` is that of the active one.
+  void NoteViewElsewhere(const Atlas& atlas, ViewPlanner& planner);
   /// Returns the surface that no view was found for, in all sub-maps, square metres.
   double OutOfReach() const;
   /// Returns the surface that may be where nobody looked yet, square metres: in the sub-map where
@@ -70,17 +73,22 @@ class FeedbackMaker {
   const RigidTransform T_depth_thermal_;
   const ThermalOptions limits_;  ///< CompleteLimits of this rig.
   OperatorAdviser adviser_;
-  std::map<int, ModelCoverage> coverages_;  ///< By sub-map.
+  ScanCoverage coverage_;
   std::map<int, ViewPlanner> planners_;  ///< By sub-map. None without a calibrated thermal camera.
-  SurfaceMaps maps_;                     ///< Every n-th pixel of the model's view.
+  /// The sub-map and view that NoteViewElsewhere() takes next.
+  struct {
+    int map = 0;
+    std::size_t view = 0;
+  } next_view_elsewhere_;
+  SurfaceMaps maps_;  ///< Every n-th pixel of the model's view.
   ViewMaps view_;
   /// How far the next view was with the last message, in seconds of walking, and until when the rig
   /// counts as on the way to it; nullopt if it was lost, or there was none.
   std::optional<double> way_s_;
   std::optional<CaptureTime> way_noted_at_, on_the_way_until_;
   bool is_on_the_way_ = false;
-  bool is_measuring_ = false;   ///< With the last message: views can be gone to and measured.
-  CaptureTime last_tracked_{};  ///< With the last message, in whatever sub-map.
+  bool is_measuring_ = false;  ///< With the last message: views can be gone to and measured.
+  CaptureTime last_known_{};   ///< With the last message, in whatever sub-map.
   std::uint64_t messages_ = 0;
 };
 

@@ -26,6 +26,10 @@ constexpr int kMaxVisitedPerMeasured = 16;
 /// rounding.
 constexpr double kNoArea_m2 = 1e-9;
 
+GridIndex BlockAt(const VoxelGrid& grid, const Eigen::Vector3d& p_map) {
+  return ((p_map - grid.min_m) / grid.block_size_m()).array().floor().matrix().cast<int>();
+}
+
 GridIndex Along(int axis) { return GridIndex::Unit(axis); }
 
 /// A block and the three that follow it along the axes, for pairs of neighbouring voxels.
@@ -97,13 +101,28 @@ std::uint64_t CellKey(const GridIndex& block, const Eigen::Vector3d& normal) {
   return key;
 }
 
+/// Returns a block's surface as it counts, with what other sub-maps have of it.
+BlockSurface Counted(BlockSurface surface, const SharedSurface& elsewhere) {
+  if (elsewhere.counts_elsewhere) return {};
+  const double total_m2 = surface.areas.total_m2();
+  const double lacking_m2 = surface.lacking_m2();
+  const double lacking_in_all_m2 = (1.0 - elsewhere.good_fraction) * total_m2;
+  if (lacking_in_all_m2 >= lacking_m2) return surface;
+  const double scale = lacking_in_all_m2 / lacking_m2;
+  surface.areas.acceptable_m2 *= scale;
+  surface.areas.bad_m2 *= scale;
+  surface.areas.never_m2 *= scale;
+  surface.areas.good_m2 = total_m2 - lacking_in_all_m2;
+  surface.lacking_position *= scale;
+  surface.lacking_normal *= scale;
+  return surface;
+}
+
 }  // namespace
 
 std::uint64_t PieceOf(const VoxelGrid& grid, const Eigen::Vector3d& p_map,
                       const Eigen::Vector3d& normal_map) {
-  const GridIndex block =
-      ((p_map - grid.min_m) / grid.block_size_m()).array().floor().matrix().cast<int>();
-  return CellKey(block, normal_map);
+  return CellKey(BlockAt(grid, p_map), normal_map);
 }
 
 void SurfaceAreas::Add(MeasurementQuality quality, double area_m2) {
@@ -176,10 +195,13 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
       // The surface lies between two voxels; its temperature may be kept by either.
       if (!voxel.assessed()) voxel = pairs.Thermal(nearer ? next[a] : here);
       const MeasurementQuality quality = voxel.quality();
-      surface.areas.Add(quality, area_m2);
-      if (quality == MeasurementQuality::kGood) continue;
-      surface.lacking_position +=
+      const Eigen::Vector3d at =
           area_m2 * grid.VoxelCentre(tsdf.block_coordinates(block) * kBlockSide + local);
+      surface.areas.Add(quality, area_m2);
+      surface.position += at;
+      surface.normal += area_m2 * normal;
+      if (quality == MeasurementQuality::kGood) continue;
+      surface.lacking_position += at;
       surface.lacking_normal += area_m2 * normal;
     }
   }
@@ -196,15 +218,42 @@ void ModelCoverage::AddToCell(const GridIndex& block, const BlockSurface& surfac
   if (cell.area_m2 < kNoArea_m2) cells_.erase(key);
 }
 
-void ModelCoverage::Replace(std::int32_t block, const GridIndex& at, const BlockSurface& surface) {
-  BlockSurface& known = blocks_[static_cast<std::size_t>(block)];
+void ModelCoverage::Replace(std::int32_t block, const GridIndex& at, const Block& now) {
+  Block& known = blocks_[static_cast<std::size_t>(block)];
   // Sums are kept by differences: what a block had goes before what it has now comes, and no
   // message walks over all blocks.
-  areas_ -= known.areas;
-  AddToCell(at, known, -1.0);
-  known = surface;
-  areas_ += known.areas;
-  AddToCell(at, known, 1.0);
+  const BlockSurface before = Counted(known.surface, known.elsewhere);
+  areas_ -= before.areas;
+  AddToCell(at, before, -1.0);
+  known = now;
+  const BlockSurface counted = Counted(known.surface, known.elsewhere);
+  areas_ += counted.areas;
+  AddToCell(at, counted, 1.0);
+}
+
+void ModelCoverage::Compare(
+    const TsdfVolume& tsdf, int max_blocks,
+    const std::function<SharedSurface(const BlockSurface& surface)>& elsewhere) {
+  const auto count = static_cast<std::int32_t>(blocks_.size());
+  for (std::int32_t i = 0; i < std::min(count, max_blocks); ++i) {
+    const std::int32_t block = next_to_compare_;
+    if (++next_to_compare_ >= count) {
+      next_to_compare_ = 0;
+      ++turns_compared_;
+    }
+    const BlockSurface& surface = blocks_[static_cast<std::size_t>(block)].surface;
+    if (!(surface.areas.total_m2() > 0.0)) continue;
+    Replace(block, tsdf.block_coordinates(block), {surface, elsewhere(surface)});
+  }
+}
+
+const BlockSurface* ModelCoverage::SurfaceAt(const TsdfVolume& tsdf,
+                                             const Eigen::Vector3d& p_map) const {
+  const std::int32_t block = tsdf.Find(BlockAt(tsdf.grid(), p_map));
+  if (block == TsdfVolume::kNoBlock || block >= static_cast<std::int32_t>(blocks_.size()))
+    return nullptr;
+  const BlockSurface& surface = blocks_[static_cast<std::size_t>(block)].surface;
+  return surface.areas.total_m2() > 0.0 ? &surface : nullptr;
 }
 
 void ModelCoverage::Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
@@ -224,7 +273,7 @@ void ModelCoverage::Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
     if (is_spilled(block)) continue;
     if (MayHaveSurface(tsdf, block)) {
       chosen_.push_back(block);
-    } else if (blocks_[static_cast<std::size_t>(block)].areas.total_m2() > 0.0) {
+    } else if (blocks_[static_cast<std::size_t>(block)].surface.areas.total_m2() > 0.0) {
       Replace(block, tsdf.block_coordinates(block), {});
     }
   }
@@ -241,7 +290,8 @@ void ModelCoverage::Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
     }
   });
   for (std::size_t k = 0; k < chosen_.size(); ++k) {
-    Replace(chosen_[k], tsdf.block_coordinates(chosen_[k]), measured_[k]);
+    const SharedSurface elsewhere = blocks_[static_cast<std::size_t>(chosen_[k])].elsewhere;
+    Replace(chosen_[k], tsdf.block_coordinates(chosen_[k]), {measured_[k], elsewhere});
   }
 }
 

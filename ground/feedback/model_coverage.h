@@ -26,10 +26,13 @@ struct SurfaceAreas {
 };
 
 /// Describes the surface within one block. It is where the distance changes sign between
-/// neighbouring voxels of which at least the first is the block's. What is not measured well is
-/// summed up with its area as weight, to know where it is and which way it faces.
+/// neighbouring voxels of which at least the first is the block's. All of it, and what is not
+/// measured well, are summed up with their areas as weights, to know where they are and which way
+/// they face.
 struct BlockSurface {
   SurfaceAreas areas;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();          ///< m2 times `map`.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();            ///< m2 times the outward normal.
   Eigen::Vector3d lacking_position = Eigen::Vector3d::Zero();  ///< m2 times `map`.
   Eigen::Vector3d lacking_normal = Eigen::Vector3d::Zero();    ///< m2 times the outward normal.
 
@@ -41,6 +44,12 @@ struct BlockSurface {
 /// is told from a surface, as in the exported cloud.
 BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, std::int32_t block,
                           float min_weight);
+
+/// Says what other sub-maps have of a block's surface.
+struct SharedSurface {
+  bool counts_elsewhere = false;  ///< One of them counts it, so that here it is not surface.
+  double good_fraction = 0.0;     ///< Measured well in the one that measured most of it well.
+};
 
 /// Describes a piece of surface, about a hand in size, that is not yet measured well and faces one
 /// way.
@@ -68,9 +77,17 @@ class ModelCoverage {
               const std::function<bool(std::int32_t block)>& is_spilled, int max_blocks,
               ThreadPool& pool);
 
+  /// Asks of the next `max_blocks` blocks, in turns, what other sub-maps have of their surface.
+  /// What those measured well counts as measured well here, too.
+  void Compare(const TsdfVolume& tsdf, int max_blocks,
+               const std::function<SharedSurface(const BlockSurface& surface)>& elsewhere);
+  /// Returns the surface of the block at a point, whoever counts it; nullptr if none is known.
+  const BlockSurface* SurfaceAt(const TsdfVolume& tsdf, const Eigen::Vector3d& p_map) const;
+
   const SurfaceAreas& areas() const { return areas_; }
-  /// Returns whether each block was measured at least once since the model was empty.
-  bool complete() const { return turns_ > 0; }
+  /// Returns how often Update() came to the end of all blocks, and Compare().
+  std::uint64_t turns() const { return turns_; }
+  std::uint64_t turns_compared() const { return turns_compared_; }
   /// Returns where most is lacking, largest first, of the cells that are `wanted` (all by default).
   std::vector<LackingSurface> Lacking(
       std::size_t max_count,
@@ -91,15 +108,22 @@ class ModelCoverage {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
-  void Replace(std::int32_t block, const GridIndex& at, const BlockSurface& surface);
+  struct Block {
+    BlockSurface surface;
+    SharedSurface elsewhere;
+  };
+
+  void Replace(std::int32_t block, const GridIndex& at, const Block& now);
   void AddToCell(const GridIndex& block, const BlockSurface& surface, double sign);
 
   const float min_weight_;
-  std::vector<BlockSurface> blocks_;
+  std::vector<Block> blocks_;
   SurfaceAreas areas_;
   std::unordered_map<std::uint64_t, Cell> cells_;
   std::int32_t next_ = 0;
+  std::int32_t next_to_compare_ = 0;
   std::uint64_t turns_ = 0;
+  std::uint64_t turns_compared_ = 0;
   std::vector<std::int32_t> chosen_;
   std::vector<BlockSurface> measured_;
 };

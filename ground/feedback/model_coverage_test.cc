@@ -52,7 +52,7 @@ TEST_F(ModelCoverageTest, AreasAreThoseOfTheSphere) {
   EXPECT_NEAR(areas.acceptable_m2, kSphere_m2 / 4, kAreaTolerance * kSphere_m2);
   EXPECT_NEAR(areas.never_m2, kSphere_m2 / 4, kAreaTolerance * kSphere_m2);
   EXPECT_EQ(areas.bad_m2, 0.0);
-  EXPECT_TRUE(coverage_.complete());
+  EXPECT_EQ(coverage_.turns(), 1U);
 }
 
 TEST_F(ModelCoverageTest, APlaneBetweenTwoLayersOfBlocksIsNotMissed) {
@@ -83,7 +83,7 @@ TEST_F(ModelCoverageTest, APartAtATimeComesToTheSame) {
   ModelCoverage whole(kMinWeight);
   whole.Update(tsdf_, thermal_, kNothingSpilled, tsdf_.block_count() + 1, pool_);
   int steps = 0;
-  for (; !coverage_.complete(); ++steps) {
+  for (; coverage_.turns() == 0; ++steps) {
     coverage_.Update(tsdf_, thermal_, kNothingSpilled, 10, pool_);
   }
   EXPECT_GE(steps, tsdf_.block_count() / 160);

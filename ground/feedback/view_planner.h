@@ -49,6 +49,10 @@ class ViewPlanner {
   /// tracked, and temperatures are taken.
   void Step(const TsdfVolume& tsdf, const ThermalVolume& thermal, const ModelCoverage& coverage,
             const RigidTransform& T_map_depth, bool is_measuring, ThreadPool& pool);
+  /// Takes that the rig has looked from there, too, into a scan volume with this grid.
+  void NoteSeen(const RigidTransform& T_map_depth, const VoxelGrid& grid) {
+    assessor_.NoteSeen(T_map_depth, grid);
+  }
   /// Tracking was lost on the way to the best view: neither it nor one like it is proposed again.
   void GiveUpBest();
 

@@ -305,6 +305,15 @@ TEST_F(ViewPlannerTest, WhereTheKnownSurfaceEndsThereMayBeMore) {
   ViewPlanner planner = Planner();
   ASSERT_TRUE(Plan(planner, 3).has_value());
   EXPECT_GT(planner.Unseen(), 0.01);
+
+  ViewPlanner informed = Planner();  // From another sub-map the rig has looked there, too.
+  for (const double x : {0.5, 0.7, 0.9}) {
+    for (const double y : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+      informed.NoteSeen(MakeTransform({x, y, 0.1}, Eigen::Quaterniond::Identity()), tsdf_.grid());
+    }
+  }
+  ASSERT_TRUE(Plan(informed, 3).has_value());
+  EXPECT_EQ(informed.Unseen(), 0.0);
 }
 
 TEST_F(ViewPlannerTest, WhereAllIsKnownThereIsNoMore) {

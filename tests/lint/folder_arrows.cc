@@ -127,7 +127,7 @@ const FolderArrows& Arrows() {
         "ground/renderer", "ground/mesh", "ground/interpretation"}},
       {"ground/feedback",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal", "ground/renderer",
-        "ground/scan"}},
+        "ground/atlas", "ground/scan"}},
       {"ground/calibration",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal", "ground/scan"}},
       {"ground/pipeline",
