@@ -199,16 +199,22 @@ void EmulatedBus::Impl::Unplug() {
   {
     const MutexLock lock(mutex_);
     if (gone_) return;
-    gone_ = true;
     node = node_;
-    if (requests_) requests_->EndAll();
-    device_.reset();
-    AnswerReap();
   }
+  // The user's requests end last. Then it closes its USB context, and umockdev aborts if whom it
+  // tells of a change closes its socket meanwhile; in Plug that may still happen to a user that
+  // opens and closes contexts until the device is back.
   umockdev_testbed_uevent(testbed_, kSysPath, "remove");
   GError* error = nullptr;
   Expect(umockdev_testbed_detach_ioctl(testbed_, ("/dev/" + node).c_str(), &error), error);
   umockdev_testbed_remove_device(testbed_, kSysPath);
+  {
+    const MutexLock lock(mutex_);
+    gone_ = true;
+    if (requests_) requests_->EndAll();
+    device_.reset();
+    AnswerReap();
+  }
   g_object_unref(std::exchange(handler_, nullptr));
 }
 
@@ -225,7 +231,8 @@ void EmulatedBus::Impl::Handle(UMockdevIoctlClient* client) {
     changed_.wait_for(lock, kLookAgainAfter);
   }
   changed_.wait(lock, [this]() REQUIRES(mutex_) { return child_.has_value(); });
-  if (request == USBDEVFS_REAPURBNDELAY || request == USBDEVFS_REAPURB) {
+  const bool replugged = umockdev_ioctl_client_get_devnode(client) != "/dev/" + node_;
+  if (!replugged && (request == USBDEVFS_REAPURBNDELAY || request == USBDEVFS_REAPURB)) {
     reaping_ = UMOCKDEV_IOCTL_CLIENT(g_object_ref(client));
     reap_into_ = address;
     reap_until_ = Now() + kAnswerNothingAfter;
@@ -233,7 +240,6 @@ void EmulatedBus::Impl::Handle(UMockdevIoctlClient* client) {
     Poke();
     return;
   }
-  const bool replugged = umockdev_ioctl_client_get_devnode(client) != "/dev/" + node_;
   const int error = gone_ || replugged ? ENODEV : Do(request, address);
   Poke();
   lock.unlock();
@@ -324,19 +330,19 @@ void EmulatedBus::Impl::Run(const std::stop_token& stop) {
 
 void EmulatedBus::Impl::UnplugIfItWants() {
   std::shared_ptr<EmulatedDevice> device;
+  std::optional<EmulatedDevice::Unplugged> unplugged;
   {
     const MutexLock lock(mutex_);
     device = device_;
+    if (device) unplugged = device->TakeUnplugged();
   }
-  if (device) {
-    if (const auto unplugged = device->TakeUnplugged()) {
-      Unplug();
-      if (unplugged->back_after) {
-        comes_back_ = device;
-        comes_back_at_ = Now() + *unplugged->back_after;
-      }
+  if (unplugged) {
+    Unplug();
+    if (unplugged->back_after) {
+      comes_back_ = device;
+      comes_back_at_ = Now() + *unplugged->back_after;
     }
-  } else if (comes_back_at_ && Now() >= *comes_back_at_) {
+  } else if (!device && comes_back_at_ && Now() >= *comes_back_at_) {
     comes_back_at_.reset();
     Plug(std::exchange(comes_back_, nullptr));
   }
