@@ -9,8 +9,8 @@ ThermalPass::ThermalPass(const GroundOptions& options, const Rig& rig, std::vect
                          const PassModel& model)
     : poses_(std::move(poses)),
       model_(model),
-      min_weight_(static_cast<float>(options.raycast().expert().min_weight())),
-      preprocessor_(options.preprocessor(), *rig.depth, rig.depth_sensor) {
+      preprocessor_(options.preprocessor(), *rig.depth, rig.depth_sensor),
+      raycaster_(options.raycast()) {
   // As the tracker looks at the model in the first pass.
   view_.camera = rig.depth->WithoutDistortion().Downscaled(options.raycast().expert().halvings());
 }
@@ -32,8 +32,7 @@ void ThermalPass::ProcessDepth(const DepthFrame& frame) {
 void ThermalPass::FuseUpTo(const DepthFrame& frame, const PassPose& pose) {
   const PreparedDepth& depth = preprocessor_.Process(frame, model_.pool);
   view_.T_map_depth = pose.T_map_depth;
-  raycaster_.Cast(model_.tsdf, view_.camera, view_.T_map_depth, min_weight_, model_.pool,
-                  view_.maps);
+  raycaster_.Cast(model_.tsdf, view_.camera, view_.T_map_depth, model_.pool, view_.maps);
   model_.stage.FuseUpTo({.depth_m = depth.depth_m,
                          .view = view_,
                          .earlier = motion_.third_last(),

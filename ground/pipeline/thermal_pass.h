@@ -11,7 +11,7 @@
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/thermal_stage.h"
 #include "ground/surface/depth_preprocessor.h"
-#include "ground/tsdf/raycaster.h"
+#include "ground/tsdf/view_raycaster.h"
 
 namespace isotherm {
 
@@ -56,9 +56,8 @@ class ThermalPass {
 
   const std::vector<PassPose> poses_;
   const PassModel model_;
-  const float min_weight_;
   DepthPreprocessor preprocessor_;
-  Raycaster raycaster_;
+  ViewRaycaster raycaster_;
   ModelView view_;
   MotionHistory motion_;  ///< Cleared where tracking was lost.
   RepeatDetector repeats_;

@@ -48,8 +48,9 @@ class LineOfSightOcclusion {
   const CameraModel thermal_camera_;
   Eigen::Matrix3f R_depth_thermal_ = Eigen::Matrix3f::Identity();
   Eigen::Vector3f t_depth_thermal_ = Eigen::Vector3f::Zero();
-  CameraModel model_camera_;
-  Image<float> depth_m_;  ///< Depth of the model along the depth camera's z; NaN = none.
+  /// Depth of the model along the depth camera's z, at every second pixel; NaN = none.
+  Image<float> depth_m_;
+  float fx_ = 0.0F, fy_ = 0.0F, cx_ = 0.0F, cy_ = 0.0F;  // In pixels of depth_m_.
 };
 
 }  // namespace isotherm

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ground/surface/upsample_kernel.h"
 #include "ground/thermal/thermal_options.h"
-#include "ground/thermal/upsample_kernel.h"
 
 namespace isotherm {
 namespace {
@@ -17,14 +17,6 @@ constexpr int kRowsPerTask = 8;
 
 /// Side of the tiles whose depths are kept to choose blocks; a row of tiles is one task.
 constexpr int kTile = kRowsPerTask;
-
-/// Every second pixel each way, and one beyond the last.
-CameraModel EverySecondPixel(CameraModel camera) {
-  camera.width = camera.width / 2 + 1;
-  camera.height = camera.height / 2 + 1;
-  for (double* parameter : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *parameter *= 0.5;
-  return camera;
-}
 
 /// A temperature is known where its pixel is to about half a pixel: interpolation between pixels
 /// and what a lens spreads. Smaller: steep pixels beside edges get through; larger: more of the

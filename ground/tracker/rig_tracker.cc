@@ -41,6 +41,7 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
       relocaliser_options_(options.relocaliser()),
       min_weight_(static_cast<float>(options.raycast().expert().min_weight())),
       tracker_(options.tracker()),
+      raycaster_(options.raycast()),
       odometry_(options.tracker().external_odometry()) {
   view_.camera = depth_camera.Downscaled(options.raycast().expert().halvings());
   candidate_.camera = view_.camera;
@@ -282,7 +283,7 @@ void RigTracker::CastView(const RigidTransform& T_map_depth, const TsdfVolume& v
                           ThreadPool& pool, ModelView& view) {
   view.T_map_depth = T_map_depth;
   view.is_young = false;
-  raycaster_.Cast(volume, view.camera, T_map_depth, min_weight_, pool, view.maps);
+  raycaster_.Cast(volume, view.camera, T_map_depth, pool, view.maps);
 }
 
 void RigTracker::LookFrom(const RigidTransform& T_map_depth, const TsdfVolume& volume,

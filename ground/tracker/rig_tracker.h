@@ -12,8 +12,8 @@
 #include "ground/icp/odometry_prior.h"
 #include "ground/icp/pose_uncertainty.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
+#include "ground/tsdf/view_raycaster.h"
 
 namespace isotherm {
 
@@ -114,7 +114,7 @@ class RigTracker {
   const float min_weight_;
   IcpTracker tracker_;
   std::unique_ptr<ThermalAlignment> alignment_;
-  Raycaster raycaster_;
+  ViewRaycaster raycaster_;
   ModelView view_;
   ModelView candidate_;  ///< The model from a pose where the rig may be.
   MotionHistory motion_;

@@ -114,6 +114,13 @@ Status Validate(const RaycastOptions& o) {
   return OkStatus();
 }
 
+CameraModel EverySecondPixel(CameraModel camera) {
+  camera.width = camera.width / 2 + 1;
+  camera.height = camera.height / 2 + 1;
+  for (double* parameter : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *parameter *= 0.5;
+  return camera;
+}
+
 void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
                        const RigidTransform& T_map_camera) {
   tiles_x_ = (camera.width + kRaycastTile - 1) / kRaycastTile;

@@ -18,7 +18,7 @@ class RaycastOptions;
 Status Validate(const RaycastOptions& options);
 
 /// Bounds of the depth at which rays can end, per tile of the image: blocks that may hold voxels
-/// behind the surface are projected as spheres. Thread-compatible.
+/// behind the surface are projected as the boxes around them. Thread-compatible.
 class RangeMap {
  public:
   void Compute(const TsdfVolume& volume, const CameraModel& camera,
@@ -38,6 +38,10 @@ class RangeMap {
   int tiles_y_ = 0;
   std::vector<float> near_vox_, far_vox_;
 };
+
+/// The camera whose maps UpsampleRow makes whole: every second pixel each way, and one beyond the
+/// last.
+CameraModel EverySecondPixel(CameraModel camera);
 
 /// Tells how exactly a ray's end is to be found.
 enum class RaycastPrecision : std::uint8_t {

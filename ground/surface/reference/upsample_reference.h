@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/testing/kernel_checks.h"
-#include "ground/thermal/upsample_kernel.h"
+#include "ground/surface/upsample_kernel.h"
 
 // These functions do what the kernel beside this folder must do, one element at a time and in
 // double precision: they are its specification. Compiled for tests only.

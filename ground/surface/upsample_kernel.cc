@@ -1,11 +1,11 @@
 // A cast of the model at half size made a whole one. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ground/thermal/upsample_kernel.cc"
+#define HWY_TARGET_INCLUDE "ground/surface/upsample_kernel.cc"
 #include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include <limits>
 
-#include "ground/thermal/upsample_kernel.h"
+#include "ground/surface/upsample_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
@@ -66,6 +66,7 @@ void UpsampleRow(const UpsampleRowArgs& args, int y, SurfaceMaps& fine, float* d
   const VF none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
   const VF too_far = hn::Set(d, std::numeric_limits<float>::max());
   Image<float>* const targets[6] = {&fine.vx, &fine.vy, &fine.vz, &fine.nx, &fine.ny, &fine.nz};
+  const int planes = distance_m == nullptr ? 6 : 7;
   HWY_ALIGN float pairs[2 * hn::MaxLanes(d)];
   for (int i = 0; 2 * i < width; i += lanes) {
     // Lanes beyond the row's end read the next row or the slack behind the last.
@@ -86,16 +87,18 @@ void UpsampleRow(const UpsampleRowArgs& args, int y, SurfaceMaps& fine, float* d
     }
     Normalize(even + 3);
     Normalize(odd + 3);
-    const auto squared = [&](const VF* p) { return SquaredDistance(p, args.position); };
-    const VF nearest_left = hn::Min(squared(a.p), squared(c.p));
-    const VF nearest = hn::Min(nearest_left, hn::Min(squared(b.p), squared(e.p)));
-    const auto distance = [&](VF square) {
-      return hn::IfThenElse(hn::Lt(square, too_far), hn::Sqrt(square), too_far);
-    };
-    even[6] = distance(hn::IfThenElse(even_agrees, squared(even), nearest_left));
-    odd[6] = distance(hn::IfThenElse(odd_agrees, squared(odd), nearest));
+    if (distance_m != nullptr) {
+      const auto squared = [&](const VF* p) { return SquaredDistance(p, args.position); };
+      const VF nearest_left = hn::Min(squared(a.p), squared(c.p));
+      const VF nearest = hn::Min(nearest_left, hn::Min(squared(b.p), squared(e.p)));
+      const auto distance = [&](VF square) {
+        return hn::IfThenElse(hn::Lt(square, too_far), hn::Sqrt(square), too_far);
+      };
+      even[6] = distance(hn::IfThenElse(even_agrees, squared(even), nearest_left));
+      odd[6] = distance(hn::IfThenElse(odd_agrees, squared(odd), nearest));
+    }
     const int rest = width - 2 * i;
-    for (int k = 0; k < 7; ++k) {
+    for (int k = 0; k < planes; ++k) {
       float* target = 2 * i + (k < 6 ? targets[k]->Row(y).data() : distance_m);
       if (rest >= 2 * lanes) {
         hn::StoreInterleaved2(even[k], odd[k], d, target);
