@@ -65,6 +65,18 @@ std::vector<Lens> Lenses() {
   alone("OnlyP1", &CameraModel::p1, 0.01);
   alone("OnlyP2", &CameraModel::p2, -0.01);
   alone("OnlyK3", &CameraModel::k3, 0.2);
+  // Wide ones, of some 80 degrees across. The quotient is about that of an angle and its tangent.
+  CameraModel rational = Camera(640, 480, 460.0);
+  rational.lens = LensKind::kRational;
+  rational.k1 = 0.778, rational.k2 = 0.068, rational.k3 = 0.002;
+  rational.p1 = 0.0004, rational.p2 = -0.0007;
+  rational.k4 = 1.11, rational.k5 = 0.238, rational.k6 = 0.004;
+  lenses.push_back({"Rational", rational});
+  CameraModel fisheye = Camera(382, 288, 285.0);
+  fisheye.lens = LensKind::kFisheye;
+  lenses.push_back({"FisheyeWithoutCoefficients", fisheye});
+  fisheye.k1 = -0.05, fisheye.k2 = 0.03, fisheye.k3 = -0.02, fisheye.k4 = 0.004;
+  lenses.push_back({"Fisheye", fisheye});
   return lenses;
 }
 
@@ -79,15 +91,14 @@ TEST_P(CameraAgainstOpencvTest, PointsOfARigProjectWhereProjectPointsPutsThem) {
   const RigidTransform T_camera_rig = MakeTransform(translation, Eigen::Quaterniond(rotation));
   std::vector<cv::Point3d> points;
   for (double z : {0.3, 0.8, 2.5}) {
-    for (double y = -0.5; y <= 0.5; y += 0.1) {
-      for (double x = -0.6; x <= 0.6; x += 0.1) points.emplace_back(x * z, y * z, z);
+    for (int y = -5; y <= 5; ++y) {
+      for (int x = -6; x <= 6; ++x) points.emplace_back(0.1 * x * z, 0.1 * y * z, z);
     }
   }
   const Eigen::Vector3d axis_angle = rotation.angle() * rotation.axis();
-  std::vector<cv::Point2d> truth;
-  cv::projectPoints(points, cv::Vec3d(axis_angle.x(), axis_angle.y(), axis_angle.z()),
-                    cv::Vec3d(translation.x(), translation.y(), translation.z()),
-                    testing::OpencvMatrix(camera_), testing::OpencvDistortion(camera_), truth);
+  const std::vector<cv::Point2d> truth =
+      testing::OpencvProject(camera_, points, {axis_angle.x(), axis_angle.y(), axis_angle.z()},
+                             {translation.x(), translation.y(), translation.z()});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_rig(points[i].x, points[i].y, points[i].z);
     const auto pixel = Project(camera_, T_camera_rig * p_rig);
@@ -102,10 +113,8 @@ TEST_P(CameraAgainstOpencvTest, PixelsLookWhereUndistortPointsSays) {
   for (int v = 0; v < camera_.height; v += 7) {
     for (int u = 0; u < camera_.width; u += 7) pixels.emplace_back(u + 0.3, v - 0.2);
   }
-  std::vector<cv::Point2d> truth;
-  const cv::TermCriteria to_the_end(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-12);
-  cv::undistortPoints(pixels, truth, testing::OpencvMatrix(camera_),
-                      testing::OpencvDistortion(camera_), cv::noArray(), cv::noArray(), to_the_end);
+  const std::vector<cv::Point2d> truth =
+      testing::OpencvUndistort(camera_, pixels, cv::Matx33d::eye());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Eigen::Vector2d ray = Unproject(camera_, {pixels[i].x, pixels[i].y});
     EXPECT_NEAR(ray.x(), truth[i].x, kIterations) << pixels[i];
@@ -126,11 +135,8 @@ TEST_P(CameraAgainstOpencvTest, ARectifiedImageHoldsTheWholeBorderAndNoMore) {
   for (int u = 0; u < camera_.width; ++u) {
     for (const int v : {0, camera_.height - 1}) border.emplace_back(u, v);
   }
-  std::vector<cv::Point2d> truth;
-  const cv::TermCriteria to_the_end(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-12);
-  cv::undistortPoints(border, truth, testing::OpencvMatrix(camera_),
-                      testing::OpencvDistortion(camera_), cv::noArray(),
-                      testing::OpencvMatrix(ideal), to_the_end);
+  const std::vector<cv::Point2d> truth =
+      testing::OpencvUndistort(camera_, border, testing::OpencvMatrix(ideal));
   double left = ideal.width, right = 0.0, top = ideal.height, bottom = 0.0;
   for (const cv::Point2d& pixel : truth) {
     left = std::min(left, pixel.x);
@@ -148,12 +154,10 @@ TEST_P(CameraAgainstOpencvTest, ARectifiedImageHoldsTheWholeBorderAndNoMore) {
 
 TEST_P(CameraAgainstOpencvTest, WhatIsInTheImageIsThereByProjectPointsToo) {
   std::vector<cv::Point3d> points;
-  for (double y = -0.6; y <= 0.6; y += 0.05) {
-    for (double x = -0.7; x <= 0.7; x += 0.05) points.emplace_back(x, y, 1.0);
+  for (int y = -12; y <= 12; ++y) {
+    for (int x = -14; x <= 14; ++x) points.emplace_back(0.05 * x, 0.05 * y, 1.0);
   }
-  std::vector<cv::Point2d> truth;
-  cv::projectPoints(points, cv::Vec3d::zeros(), cv::Vec3d::zeros(), testing::OpencvMatrix(camera_),
-                    testing::OpencvDistortion(camera_), truth);
+  const std::vector<cv::Point2d> truth = testing::OpencvProject(camera_, points, {}, {});
   int inside = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto pixel = ProjectIntoImage(camera_, {points[i].x, points[i].y});

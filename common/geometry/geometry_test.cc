@@ -102,6 +102,56 @@ TEST(CameraTest, UnprojectFindsThePointThatAnyLensHasMoved) {
   }
 }
 
+TEST(CameraTest, AWideLensesPointsAreFoundToItsEdge) {
+  CameraModel fisheye = ThermalCameraModel().WithoutDistortion();
+  fisheye.lens = LensKind::kFisheye;
+  fisheye.k1 = -0.03, fisheye.k2 = 0.01;
+  CameraModel rational = ThermalCameraModel();
+  rational.lens = LensKind::kRational;
+  rational.k1 = 0.778, rational.k2 = 0.068, rational.k3 = 0.002;
+  rational.k4 = 1.11, rational.k5 = 0.238, rational.k6 = 0.004;
+  for (const auto& [camera, max_tangent] : {std::pair(fisheye, 50.0), std::pair(rational, 1.8)}) {
+    for (int i = 0; i <= 50; ++i) {
+      const double r = 0.02 * i * max_tangent;
+      const Eigen::Vector2d point(r * std::cos(3.0 * r), r * std::sin(3.0 * r));
+      const Eigen::Vector2d found = Unproject(camera, ProjectNormalized(camera, point));
+      EXPECT_NEAR((found - point).norm(), 0.0, 1e-8 * (1.0 + r * r)) << r;
+    }
+  }
+}
+
+TEST(CameraTest, AFisheyePixelThatLooksBackwardsSeesNothing) {
+  CameraModel camera = ThermalCameraModel().WithoutDistortion();
+  camera.lens = LensKind::kFisheye;
+  for (const double radius : {1.6, 3.0, 50.0}) {
+    const Eigen::Vector2d pixel(camera.cx, camera.cy - radius * camera.fy);
+    const Eigen::Vector2d back = ProjectNormalized(camera, Unproject(camera, pixel));
+    EXPECT_FALSE((back - pixel).norm() <= 1.0) << radius;
+  }
+}
+
+TEST(CameraTest, TheDerivativeIsTheSlopeOfTheProjection) {
+  for (const LensKind lens : {LensKind::kBrownConrady, LensKind::kRational, LensKind::kFisheye}) {
+    CameraModel camera = ThermalCameraModel();
+    camera.lens = lens;
+    camera.k4 = 0.02, camera.k5 = -0.03, camera.k6 = 0.01;
+    for (const Eigen::Vector2d& point : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1e-5, -1e-5),
+                                         Eigen::Vector2d(0.3, -0.2), Eigen::Vector2d(-0.6, 0.4)}) {
+      const ProjectedPixel found = ProjectWithDerivative(camera, point);
+      EXPECT_EQ(found.pixel, ProjectNormalized(camera, point));
+      constexpr double kStep = 1e-6;
+      for (int axis = 0; axis < 2; ++axis) {
+        const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
+        const Eigen::Vector2d slope =
+            (ProjectNormalized(camera, point + step) - ProjectNormalized(camera, point - step)) /
+            (2.0 * kStep);
+        EXPECT_NEAR((found.by_normalized.col(axis) - slope).norm(), 0.0, 1e-5)
+            << static_cast<int>(lens) << " at " << point.transpose();
+      }
+    }
+  }
+}
+
 TEST(CameraTest, WhatThePolynomialDoesNotReachIsNotUnprojected) {
   CameraModel camera = ThermalCameraModel();
   camera.k1 = -0.4, camera.k2 = camera.p1 = camera.p2 = camera.k3 = 0.0;
@@ -124,6 +174,12 @@ TEST(CameraTest, DownscaledCameraSeesTheSameDirections) {
   const Eigen::Vector2d full = Unproject(camera, {10.5, 20.5});
   const Eigen::Vector2d coarse = Unproject(half, {5.0, 10.0});
   EXPECT_NEAR((full - coarse).norm(), 0.0, kExact);
+}
+
+TEST(CameraTest, ALensOfALaterVersionIsRejected) {
+  CameraModel camera = ThermalCameraModel().WithoutDistortion();
+  camera.lens = static_cast<LensKind>(3);
+  EXPECT_FALSE(Validate(camera, "thermal").ok());
 }
 
 TEST(CameraTest, F57NonPhysicalIntrinsicsAreRejectedByName) {

@@ -13,6 +13,9 @@ constexpr double kMaxGrowth = 1.5;
 /// A pixel is looked back at from the point that it sees: farther away than this, normalised, the
 /// polynomial has folded or the iteration has not ended.
 constexpr double kSamePoint = 1e-3;
+/// Tangent of 70 degrees: nothing that a very wide lens sees farther from its axis is kept. A plane
+/// image of all of it would have hardly any pixels left for the middle.
+constexpr double kMaxNormalized = 2.75;
 
 /// Returns what the centres of the border's pixels see, in normalised image coordinates.
 Eigen::AlignedBox2d UndistortedBorder(const CameraModel& camera) {
@@ -21,7 +24,13 @@ Eigen::AlignedBox2d UndistortedBorder(const CameraModel& camera) {
     const Eigen::Vector2d pixel(u, v);
     const Eigen::Vector2d point = Unproject(camera, pixel);
     const Eigen::Vector2d error_px = ProjectNormalized(camera, point) - pixel;
-    if (error_px.norm() <= kSamePoint * camera.fx) border.extend(point);
+    const bool is_seen = error_px.norm() <= kSamePoint * camera.fx;
+    if (is_seen && point.norm() <= kMaxNormalized) {
+      border.extend(point);
+    } else if (is_seen || camera.lens == LensKind::kFisheye) {
+      // A pixel that looks aside or backwards, or beyond a fold, where what it sees is not known.
+      border.extend(kMaxNormalized * point.normalized());
+    }
   };
   for (int u = 0; u < camera.width; ++u) {
     extend(u, 0);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <vector>
 
 namespace isotherm {
 namespace {
@@ -57,17 +59,40 @@ TEST(RectifiedCameraTest, WhatNeedsATooLargeImageGetsAShorterFocalLength) {
 }
 
 TEST(RectifiedCameraTest, NoDistortionMakesAnImageWithoutBound) {
-  for (const double k : {-1e4, -20.0, -1.0, 1.0, 20.0, 1e4}) {
-    for (double CameraModel::*const coefficient :
-         {&CameraModel::k1, &CameraModel::k2, &CameraModel::k3, &CameraModel::p1,
-          &CameraModel::p2}) {
-      CameraModel camera = Camera();
-      camera.*coefficient = k;
-      const CameraModel ideal = RectifiedCamera(camera);
-      EXPECT_TRUE(Validate(ideal, "thermal").ok()) << k;
-      EXPECT_LE(ideal.width, 1.5 * camera.width + 2.0) << k;
-      EXPECT_LE(ideal.height, 1.5 * camera.height + 2.0) << k;
+  const std::map<LensKind, std::vector<double CameraModel::*>> coefficients = {
+      {LensKind::kBrownConrady,
+       {&CameraModel::k1, &CameraModel::k2, &CameraModel::k3, &CameraModel::p1, &CameraModel::p2}},
+      {LensKind::kRational,
+       {&CameraModel::k1, &CameraModel::k4, &CameraModel::k5, &CameraModel::k6}},
+      {LensKind::kFisheye,
+       {&CameraModel::k1, &CameraModel::k2, &CameraModel::k3, &CameraModel::k4}}};
+  for (const auto& [lens, members] : coefficients) {
+    for (const double k : {-1e4, -20.0, -1.0, 1.0, 20.0, 1e4}) {
+      for (double CameraModel::*const coefficient : members) {
+        for (const double focal_px : {1.0, 371.4, 1e6}) {
+          CameraModel camera = Camera();
+          camera.lens = lens;
+          camera.fx = camera.fy = focal_px;
+          camera.*coefficient = k;
+          const CameraModel ideal = RectifiedCamera(camera);
+          EXPECT_TRUE(Validate(ideal, "thermal").ok()) << k << ", focal " << focal_px;
+          EXPECT_LE(ideal.width, 1.5 * camera.width + 2.0) << k;
+          EXPECT_LE(ideal.height, 1.5 * camera.height + 2.0) << k;
+        }
+      }
     }
+  }
+}
+
+TEST(RectifiedCameraTest, OfAHemisphereTheInner70DegreesAreKept) {
+  CameraModel camera = Camera();
+  camera.lens = LensKind::kFisheye;
+  for (const double degrees : {170.0, 180.0, 200.0}) {
+    camera.fx = camera.fy = camera.width / (degrees * std::numbers::pi / 180.0);
+    const CameraModel ideal = RectifiedCamera(camera);
+    EXPECT_NEAR(FieldOfViewDeg(ideal), 140.0, 0.5) << degrees;
+    EXPECT_LE(ideal.width, 1.5 * camera.width + 2.0);
+    EXPECT_GT(ideal.fx, 0.6 * camera.fx) << "the middle keeps its pixels";
   }
 }
 

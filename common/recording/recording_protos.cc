@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "common/recording/proto_parts.h"
 #include "common/rig/rig_calibration.h"
@@ -10,6 +11,24 @@ namespace isotherm::recording {
 namespace {
 
 constexpr std::string_view kWorldFrame = "world";
+
+/// A lens as Foxglove names it, and its coefficients in its order.
+struct NamedDistortion {
+  const char* name;
+  std::vector<double> coefficients;
+};
+
+NamedDistortion DistortionOf(const CameraModel& c) {
+  switch (c.lens) {
+    case LensKind::kBrownConrady:
+      break;
+    case LensKind::kRational:
+      return {"rational_polynomial", {c.k1, c.k2, c.p1, c.p2, c.k3, c.k4, c.k5, c.k6}};
+    case LensKind::kFisheye:
+      return {"kannala_brandt", {c.k1, c.k2, c.k3, c.k4}};
+  }
+  return {"plumb_bob", {c.k1, c.k2, c.p1, c.p2, c.k3}};
+}
 
 Eigen::Vector3d ToVector(const foxglove::Vector3& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Quaterniond ToQuaternion(const foxglove::Quaternion& q) {
@@ -25,8 +44,9 @@ foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_i
   message.set_frame_id(std::string(frame_id));
   message.set_width(static_cast<std::uint32_t>(camera.width));
   message.set_height(static_cast<std::uint32_t>(camera.height));
-  message.set_distortion_model("plumb_bob");
-  for (const double d : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) message.add_d(d);
+  const NamedDistortion distortion = DistortionOf(camera);
+  message.set_distortion_model(distortion.name);
+  for (const double d : distortion.coefficients) message.add_d(d);
   // Row-major K, R and P as ROS defines them: no rectification, and P is K without a baseline.
   for (const double k : {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0}) {
     message.add_k(k);

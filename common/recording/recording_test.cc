@@ -30,7 +30,6 @@ using testing::ReadBack;
 using testing::ReaderOf;
 using testing::TimeOf;
 using testing::WriterTo;
-using testing::WriteScan;
 
 void ExpectSame(const FrameHeader& a, const FrameHeader& b) {
   EXPECT_EQ(a.session, b.session);
@@ -326,6 +325,20 @@ TEST(RecordingTest, ARawImageIsOfAKnownRawEncodingOrOfNoOneWhoSays) {
   ASSERT_TRUE(read.has_value());
   ExpectSame(read->frame.image, thermal.image);
   EXPECT_EQ(read->frame.scale, kCentikelvin);
+}
+
+/// As Foxglove's schema lists them.
+TEST(RecordingTest, EachLensHasTheNameAndTheCoefficientsThatViewersKnow) {
+  CameraModel camera{640, 480, 500.0, 501.0, 320.0, 240.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
+  const auto expect = [&](LensKind lens, const char* name, const std::vector<double>& values) {
+    camera.lens = lens;
+    const foxglove::CameraCalibration message = recording::ToMessage(kScanStart, "thermal", camera);
+    EXPECT_EQ(message.distortion_model(), name);
+    EXPECT_EQ(std::vector<double>(message.d().begin(), message.d().end()), values) << name;
+  };
+  expect(LensKind::kBrownConrady, "plumb_bob", {1.0, 2.0, 3.0, 4.0, 5.0});
+  expect(LensKind::kRational, "rational_polynomial", {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0});
+  expect(LensKind::kFisheye, "kannala_brandt", {1.0, 2.0, 5.0, 6.0});
 }
 
 /// The channel had another name before.

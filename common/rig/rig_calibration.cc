@@ -22,6 +22,10 @@ Status CheckQuaternion(const Transform& t) {
       "T_thermal_depth: qx qy qz qw must be a unit quaternion, but its length is {:.6g}", norm));
 }
 
+static_assert(static_cast<int>(LensKind::kBrownConrady) == CameraIntrinsics::BROWN_CONRADY &&
+              static_cast<int>(LensKind::kRational) == CameraIntrinsics::RATIONAL &&
+              static_cast<int>(LensKind::kFisheye) == CameraIntrinsics::FISHEYE);
+
 }  // namespace
 
 CameraModel FromProto(const CameraIntrinsics& intrinsics) {
@@ -37,6 +41,10 @@ CameraModel FromProto(const CameraIntrinsics& intrinsics) {
   camera.p1 = intrinsics.p1();
   camera.p2 = intrinsics.p2();
   camera.k3 = intrinsics.k3();
+  camera.k4 = intrinsics.k4();
+  camera.k5 = intrinsics.k5();
+  camera.k6 = intrinsics.k6();
+  camera.lens = static_cast<LensKind>(intrinsics.lens());
   return camera;
 }
 
@@ -49,12 +57,20 @@ CameraIntrinsics ToProto(const CameraModel& camera) {
   intrinsics.set_cx(camera.cx);
   intrinsics.set_cy(camera.cy);
   // Zeros are left out, so that a file of an ideal camera says no more than was known.
-  if (camera.HasDistortion()) {
-    intrinsics.set_k1(camera.k1);
-    intrinsics.set_k2(camera.k2);
+  if (!camera.HasDistortion()) return intrinsics;
+  intrinsics.set_k1(camera.k1);
+  intrinsics.set_k2(camera.k2);
+  intrinsics.set_k3(camera.k3);
+  if (camera.lens != LensKind::kFisheye) {
     intrinsics.set_p1(camera.p1);
     intrinsics.set_p2(camera.p2);
-    intrinsics.set_k3(camera.k3);
+  }
+  if (camera.lens == LensKind::kBrownConrady) return intrinsics;
+  intrinsics.set_lens(static_cast<CameraIntrinsics::Lens>(camera.lens));
+  intrinsics.set_k4(camera.k4);
+  if (camera.lens == LensKind::kRational) {
+    intrinsics.set_k5(camera.k5);
+    intrinsics.set_k6(camera.k6);
   }
   return intrinsics;
 }

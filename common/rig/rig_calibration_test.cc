@@ -51,6 +51,38 @@ TEST(RigCalibrationTest, TextRoundTripKeepsTheRig) {
   EXPECT_EQ(again->thermal_delay_s, rig.thermal_delay_s);
 }
 
+TEST(RigCalibrationTest, AWideLensIsReadAndWrittenBack) {
+  const std::string rational =
+      ReplaceFirst(kRigText, "k2: 0.29", "k2: 0.29 lens: RATIONAL k4: 0.7 k5: 0.04 k6: -0.01");
+  const Result<Rig> rig = ParseRigCalibration(rational, "rig");
+  ASSERT_TRUE(rig.has_value()) << rig.error().message();
+  EXPECT_EQ(rig->thermal->lens, LensKind::kRational);
+  EXPECT_EQ(rig->thermal->k6, -0.01);
+  const Result<Rig> back = ParseRigCalibration(ToText(*rig), "rig");
+  ASSERT_TRUE(back.has_value()) << back.error().message();
+  EXPECT_EQ(back->thermal->lens, LensKind::kRational);
+  EXPECT_EQ(back->thermal->k4, 0.7);
+  EXPECT_EQ(back->thermal->k5, 0.04);
+
+  const std::string fisheye =
+      ReplaceFirst(kRigText, "k2: 0.29", "k2: 0.29 lens: FISHEYE k3: 0.02 k4: 0.003");
+  const Result<Rig> wide = ParseRigCalibration(fisheye, "rig");
+  ASSERT_TRUE(wide.has_value()) << wide.error().message();
+  EXPECT_EQ(ParseRigCalibration(ToText(*wide), "rig")->thermal->lens, LensKind::kFisheye);
+  EXPECT_EQ(ParseRigCalibration(ToText(*wide), "rig")->thermal->k4, 0.003);
+}
+
+TEST(RigCalibrationTest, CoefficientsOfAnotherLensAreRefused) {
+  const auto error = [](const char* given) {
+    return RigError(ReplaceFirst(kRigText, "k2: 0.29", given));
+  };
+  EXPECT_THAT(error("k2: 0.29 k4: 0.1"), HasSubstr("thermal: k4 k5 k6 are those of a wide lens"));
+  EXPECT_THAT(error("lens: FISHEYE k5: 0.1"), HasSubstr("thermal: a FISHEYE lens has k1 k2 k3 k4"));
+  EXPECT_THAT(error("lens: FISHEYE p1: 0.1"), HasSubstr("FISHEYE"));
+  EXPECT_THAT(error("lens: RATIONAL k6: nan"), HasSubstr("distortion"));
+  EXPECT_THAT(error("lens: PLUMB_BOB"), HasSubstr("lens"));
+}
+
 TEST(RigCalibrationTest, AbsentPartsStayAbsent) {
   Rig rig;
   rig.thermal = ParseRigCalibration(kRigText, "first").value().thermal;

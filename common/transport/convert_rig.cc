@@ -1,6 +1,7 @@
 #include <isotherm_frames.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "common/transport/bounded_text.h"
@@ -15,6 +16,8 @@ namespace {
 constexpr double kQuaternionTolerance =
     1e-3;  // Float rounding of a sender is far below; a pose that is none is far above.
 
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
 isotherm_wire_Camera ToWireCamera(const CameraModel& camera) {
   return {.width = static_cast<std::uint32_t>(camera.width),
           .height = static_cast<std::uint32_t>(camera.height),
@@ -22,14 +25,25 @@ isotherm_wire_Camera ToWireCamera(const CameraModel& camera) {
           .fy = camera.fy,
           .cx = camera.cx,
           .cy = camera.cy,
-          .k1 = camera.k1,
+          .k1 = camera.lens == LensKind::kBrownConrady ? camera.k1 : kNoNumber,
           .k2 = camera.k2,
           .p1 = camera.p1,
           .p2 = camera.p2,
           .k3 = camera.k3};
 }
 
-CameraModel FromWireCamera(const isotherm_wire_Camera& camera) {
+isotherm_wire_WideLens ToWireWideLens(const CameraModel& camera) {
+  if (camera.lens == LensKind::kBrownConrady) return {};
+  return {.kind = static_cast<std::uint8_t>(camera.lens),
+          .k1 = camera.k1,
+          .k4 = camera.k4,
+          .k5 = camera.k5,
+          .k6 = camera.k6};
+}
+
+/// CheckRig refuses what is no sound camera.
+CameraModel FromWireCamera(const isotherm_wire_Camera& camera,
+                           const isotherm_wire_WideLens& wide_lens) {
   CameraModel model;
   model.width = static_cast<int>(camera.width);
   model.height = static_cast<int>(camera.height);
@@ -42,6 +56,12 @@ CameraModel FromWireCamera(const isotherm_wire_Camera& camera) {
   model.p1 = camera.p1;
   model.p2 = camera.p2;
   model.k3 = camera.k3;
+  model.lens = static_cast<LensKind>(wide_lens.kind);
+  if (model.lens == LensKind::kBrownConrady) return model;
+  model.k1 = wide_lens.k1;
+  model.k4 = wide_lens.k4;
+  model.k5 = wide_lens.k5;
+  model.k6 = wide_lens.k6;
   return model;
 }
 
@@ -158,8 +178,11 @@ void FromWireSceneInfluence(const isotherm_wire_Rig& from, Rig* rig) {
 }
 
 std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, Rig* rig) {
-  if (from.has_depth) rig->depth = FromWireCamera(from.depth);
-  if (from.has_thermal) rig->thermal = FromWireCamera(from.thermal);
+  constexpr auto kLast = static_cast<std::uint8_t>(kLastLensKind);
+  if (from.depth_wide_lens.kind > kLast || from.thermal_wide_lens.kind > kLast)
+    return RefusalCause::kOutOfRange;
+  if (from.has_depth) rig->depth = FromWireCamera(from.depth, from.depth_wide_lens);
+  if (from.has_thermal) rig->thermal = FromWireCamera(from.thermal, from.thermal_wide_lens);
   rig->depth_scale = from.depth_scale;
   if (from.has_t_thermal_depth) {
     rig->T_thermal_depth = FromWirePose(from.t_thermal_depth);
@@ -204,9 +227,15 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   const Rig& rig = from.rig;
   to->session = from.session;
   to->has_depth = rig.depth.has_value();
-  if (rig.depth) to->depth = ToWireCamera(*rig.depth);
+  if (rig.depth) {
+    to->depth = ToWireCamera(*rig.depth);
+    to->depth_wide_lens = ToWireWideLens(*rig.depth);
+  }
   to->has_thermal = rig.thermal.has_value();
-  if (rig.thermal) to->thermal = ToWireCamera(*rig.thermal);
+  if (rig.thermal) {
+    to->thermal = ToWireCamera(*rig.thermal);
+    to->thermal_wide_lens = ToWireWideLens(*rig.thermal);
+  }
   to->depth_scale = rig.depth_scale;
   to->has_t_thermal_depth = rig.T_thermal_depth.has_value();
   if (rig.T_thermal_depth) to->t_thermal_depth = ToWirePose(*rig.T_thermal_depth);

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <isotherm_frames.h>
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "common/transport/conversions.h"
 
@@ -55,6 +57,39 @@ TEST(ConvertRigTest, AnEdgeBefore22HasTheSensorsOfAnOldRigFile) {
   ASSERT_EQ(FromWire(wire, &received), std::nullopt);
   EXPECT_EQ(received.rig.depth_sensor.near_range_m, DepthSensorModel().near_range_m);
   EXPECT_EQ(received.rig.thermal_sensor.time_constant_s, ThermalSensorModel().time_constant_s);
+}
+
+TEST(ConvertRigTest, WideLensesArriveAsTheyWereWritten) {
+  RigDescription sent = SomeRig();
+  sent.rig.depth->k1 = -0.1;
+  sent.rig.thermal = sent.rig.depth;
+  sent.rig.depth->lens = LensKind::kRational;
+  sent.rig.depth->k4 = 0.7, sent.rig.depth->k5 = 0.04, sent.rig.depth->k6 = -0.01;
+  sent.rig.thermal->lens = LensKind::kFisheye;
+  sent.rig.thermal->k4 = 0.003;
+  isotherm_wire_Rig wire{};
+  ToWire(sent, &wire);
+  RigDescription received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  const CameraModel& depth = *received.rig.depth;
+  EXPECT_EQ(depth.lens, LensKind::kRational);
+  EXPECT_EQ(std::vector({depth.k1, depth.k4, depth.k5, depth.k6}),
+            std::vector({-0.1, 0.7, 0.04, -0.01}));
+  EXPECT_EQ(received.rig.thermal->lens, LensKind::kFisheye);
+  EXPECT_EQ(received.rig.thermal->k1, -0.1);
+  EXPECT_EQ(received.rig.thermal->k4, 0.003);
+}
+
+/// An earlier ground reads no further than it knows.
+TEST(ConvertRigTest, WithoutWhatAWideLensHasBesideItsCameraIsRefused) {
+  RigDescription sent = SomeRig();
+  sent.rig.depth->lens = LensKind::kFisheye;
+  sent.rig.depth->k4 = 0.003;
+  EXPECT_FALSE(IsRefused(sent, [](isotherm_wire_Rig&) {}));
+  EXPECT_TRUE(IsRefused(sent, [](isotherm_wire_Rig& wire) { wire.depth_wide_lens = {}; }));
+  EXPECT_TRUE(IsRefused(sent, [](isotherm_wire_Rig& wire) { wire.depth_wide_lens.kind = 3; }));
+  EXPECT_TRUE(IsRefused(sent, [](isotherm_wire_Rig& wire) { wire.thermal_wide_lens.kind = 255; }));
+  EXPECT_TRUE(IsRefused(sent, [](isotherm_wire_Rig& wire) { wire.depth_wide_lens.k4 = NAN; }));
 }
 
 TEST(ConvertRigTest, AnEdgeBefore23HasThermalFramesInCentikelvin) {

@@ -44,20 +44,12 @@ ProjectionDerivatives ProjectWithDerivatives(const CameraModel& camera,
                                              const Eigen::Vector3d& p_thermal) {
   const double inverse_z = 1.0 / p_thermal.z();
   const double x = p_thermal.x() * inverse_z, y = p_thermal.y() * inverse_z;
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
-  const double slope = camera.k1 + r2 * (2.0 * camera.k2 + 3.0 * r2 * camera.k3);  // By r2.
-  const double p1 = camera.p1, p2 = camera.p2;
-  Eigen::Matrix2d distorted;
-  distorted << radial + 2.0 * x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x,
-      2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y,
-      2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y,
-      radial + 2.0 * y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x;
   Eigen::Matrix<double, 2, 3> normalized;
   normalized << inverse_z, 0.0, -x * inverse_z, 0.0, inverse_z, -y * inverse_z;
+  const ProjectedPixel projected = ProjectWithDerivative(camera, {x, y});
   ProjectionDerivatives result;
-  result.pixel = ProjectNormalized(camera, {x, y});
-  result.by_point = Eigen::Vector2d(camera.fx, camera.fy).asDiagonal() * distorted * normalized;
+  result.pixel = projected.pixel;
+  result.by_point = projected.by_normalized * normalized;
   return result;
 }
 

@@ -4,19 +4,26 @@
 #include <cmath>
 #include <string_view>
 
+#include "common/geometry/camera.h"
+
 namespace isotherm {
 
-/// How a lens turns directions into pixels. All begin with fx fy cx cy; what follows is OpenCV's,
-/// in OpenCV's order.
-enum class LensKind {
-  kBrownConrady,  ///< k1 k2 p1 p2 k3
-  kRational,      ///< k1 k2 p1 p2 k3 k4 k5 k6, for wide lenses
-  kFisheye,       ///< k1 k2 k3 k4 of the angle from the axis, for very wide lenses
-};
+constexpr std::string_view ToString(LensKind kind) {
+  switch (kind) {
+    case LensKind::kBrownConrady:
+      return "brown-conrady";
+    case LensKind::kRational:
+      return "rational";
+    case LensKind::kFisheye:
+      return "fisheye";
+  }
+  return "";
+}
 
 inline constexpr int kMaxLensParameters = 12;
 
-/// The parameters of a lens; those that its kind does not have are 0.
+/// The parameters of a lens: fx fy cx cy and its kind's coefficients; those that it does not have
+/// are 0.
 using LensParameters = std::array<double, kMaxLensParameters>;
 
 constexpr int LensParameterCount(LensKind kind) {

@@ -30,6 +30,8 @@ class LoadModelTest : public ::testing::Test {
     });
     rig_.depth = CameraModel{640, 480, 575.0, 576.0, 320.0, 240.0, 0.1, 0.2, 0.3, 0.4, 0.5};
     rig_.thermal = CameraModel{382, 288, 550.0, 551.0, 190.0, 144.0, -0.2};
+    rig_.thermal->lens = LensKind::kFisheye;
+    rig_.thermal->k4 = 0.004;
     rig_.T_thermal_depth = MakeTransform({0.07, 0.0, 0.0}, Eigen::Quaterniond::Identity());
   }
   void Save() const {
@@ -55,9 +57,25 @@ TEST_F(LoadModelTest, BringsBackVolumesCamerasAndPoses) {
   EXPECT_EQ(ThermalVoxelAt(*model->tsdf, *model->thermal, p_world).bits,
             ThermalVoxelAt(*tsdf_, *thermal_, p_world).bits);
   EXPECT_EQ(model->rig.depth->k3, rig_.depth->k3);
+  EXPECT_EQ(model->rig.depth->lens, LensKind::kBrownConrady);
   EXPECT_EQ(model->rig.thermal->fy, rig_.thermal->fy);
+  EXPECT_EQ(model->rig.thermal->lens, LensKind::kFisheye);
+  EXPECT_EQ(model->rig.thermal->k4, rig_.thermal->k4);
   EXPECT_TRUE(model->rig.T_thermal_depth->isApprox(*rig_.T_thermal_depth, 1e-12));
   ASSERT_EQ(model->known_poses.size(), 1U);
+}
+
+TEST_F(LoadModelTest, ARationalLensComesBack) {
+  rig_.depth->lens = LensKind::kRational;
+  rig_.depth->k4 = 0.6, rig_.depth->k5 = 0.7, rig_.depth->k6 = 0.8;
+  Save();
+  GroundOptions options;
+  const Result<LoadedModel> model = LoadModel(Path(), options);
+  ASSERT_TRUE(model) << model.error().message();
+  const CameraModel& depth = *model->rig.depth;
+  EXPECT_EQ(depth.lens, LensKind::kRational);
+  EXPECT_EQ(std::vector({depth.k3, depth.k4, depth.k5, depth.k6}),
+            std::vector({0.5, 0.6, 0.7, 0.8}));
 }
 
 TEST_F(LoadModelTest, AModelWithoutThermalCameraHasNone) {

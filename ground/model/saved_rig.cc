@@ -37,11 +37,17 @@ SavedCamera ToSaved(const CameraModel& camera) {
   saved.set_cy(camera.cy);
   for (const double k : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3})
     saved.add_distortion(k);
+  if (camera.lens == LensKind::kBrownConrady) return saved;
+  for (const double k : {camera.k4, camera.k5, camera.k6}) saved.add_distortion(k);
+  saved.set_lens(static_cast<int>(camera.lens));
   return saved;
 }
 
 std::optional<CameraModel> FromSaved(const SavedCamera& saved) {
   if (!saved.has_width()) return std::nullopt;
+  // Not by a cast alone, which takes 256 for 0; Validate refuses what is none.
+  constexpr int kNone = static_cast<int>(kLastLensKind) + 1;
+  const int lens = saved.lens() >= 0 && saved.lens() < kNone ? saved.lens() : kNone;
   CameraModel camera{saved.width(), saved.height(), saved.fx(), saved.fy(), saved.cx(), saved.cy()};
   const auto k = [&](int i) { return i < saved.distortion_size() ? saved.distortion(i) : 0.0; };
   camera.k1 = k(0);
@@ -49,6 +55,10 @@ std::optional<CameraModel> FromSaved(const SavedCamera& saved) {
   camera.p1 = k(2);
   camera.p2 = k(3);
   camera.k3 = k(4);
+  camera.k4 = k(5);
+  camera.k5 = k(6);
+  camera.k6 = k(7);
+  camera.lens = static_cast<LensKind>(lens);
   return camera;
 }
 

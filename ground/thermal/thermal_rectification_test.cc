@@ -102,6 +102,20 @@ TEST(ThermalRectificationTest, APincushionLensIsStraightenedAsByOpencv) {
   EXPECT_GT(found.compared, 90'000);
 }
 
+TEST(ThermalRectificationTest, WideLensesAreStraightenedAsByOpencv) {
+  CameraModel rational = DistortedCamera(0.778, 0.068, 0.002);
+  rational.fx = rational.fy = 220.0;
+  rational.lens = LensKind::kRational;
+  rational.k4 = 1.11, rational.k5 = 0.238, rational.k6 = 0.004;
+  EXPECT_GT(CompareWithOpencv(rational).compared, kRawPixels);
+  CameraModel fisheye = DistortedCamera(-0.03, 0.01, -0.004);
+  fisheye.fx = fisheye.fy = 220.0;
+  fisheye.lens = LensKind::kFisheye;
+  fisheye.p1 = fisheye.p2 = 0.0;
+  fisheye.k4 = 0.001;
+  EXPECT_GT(CompareWithOpencv(fisheye).compared, kRawPixels);
+}
+
 /// Each corner and the middle of each side shows something hot.
 TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
   const CameraModel camera = DistortedCamera(-0.439, 0.29, -0.114);
