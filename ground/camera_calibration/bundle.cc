@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <limits>
-#include <memory>
+
+#include "ground/camera_calibration/bundle_priors.h"
+#include "ground/camera_calibration/lens_rays.h"
 
 namespace isotherm {
 namespace {
@@ -98,19 +99,6 @@ class PriorCost {
   const std::array<double, kSize> sigma_;
 };
 
-std::array<double, BoardShape::kWarpTerms> WarpSigmas(const CalibrationTarget& target) {
-  // A board bends rather than ripples.
-  constexpr double kCubic = 0.3, kQuartic = 0.15;
-  std::array<double, BoardShape::kWarpTerms> sigmas{};
-  for (int i = 0; i < BoardShape::kWarpTerms; ++i) {
-    const int degree = BoardShape::DegreeOf(i);
-    sigmas[static_cast<std::size_t>(i)] = target.warp_sigma_m * (degree == 2   ? 1.0
-                                                                 : degree == 3 ? kCubic
-                                                                               : kQuartic);
-  }
-  return sigmas;
-}
-
 /// The parameters in the order and form that Ceres works on, and the problem over them.
 class BundleProblem {
  public:
@@ -166,6 +154,13 @@ class BundleProblem {
   }
   double* ViewBlock(std::size_t view) { return view_poses_[view].data(); }
   std::size_t views() const { return view_poses_.size(); }
+  /// How many values the observations alone determine: those that have no prior.
+  int FreeParameters() const {
+    auto count = static_cast<int>(kPose * (view_poses_.size() + cameras_.size() - 1));
+    if (options_.fix_lenses) return count;
+    for (const BundleCamera& camera : cameras_) count += FreeLensParameters(camera.kind);
+    return count;
+  }
 
  private:
   void AddBlocks() {
@@ -206,7 +201,19 @@ class BundleProblem {
         offsets_[static_cast<std::size_t>(observation.feature)].data()));
   }
 
+  void AddLensPriors() {
+    using Prior = PriorCost<kMaxLensParameters>;
+    using Cost = ceres::AutoDiffCostFunction<Prior, kMaxLensParameters, kMaxLensParameters>;
+    for (std::size_t i = 0; i < lenses_.size(); ++i) {
+      const LensKind kind = cameras_[i].kind;
+      if (options_.fix_lenses || kind == LensKind::kBrownConrady) continue;
+      prior_ids_.push_back(problem_.AddResidualBlock(new Cost(new Prior(LensSigmas(kind))), nullptr,
+                                                     lenses_[i].data()));
+    }
+  }
+
   void AddPriors() {
+    AddLensPriors();
     if (!options_.estimate_board) return;
     using WarpPrior = PriorCost<BoardShape::kWarpTerms>;
     using WarpCost =
@@ -294,10 +301,7 @@ BundleFit Fit(BundleProblem& bundle, const std::vector<FeatureObservation>& obse
     const Eigen::LLT<Eigen::Matrix2d> llt(observations[i].covariance);
     fit.residuals_px.emplace_back(llt.matrixL() * w);
   }
-  // Priors add as many equations as the board has parameters.
-  const int parameters =
-      static_cast<int>(kPose * bundle.views()) + LensParameterCount(LensKind::kBrownConrady);
-  const double freedom = 2.0 * static_cast<double>(observations.size()) - parameters;
+  const double freedom = 2.0 * static_cast<double>(observations.size()) - bundle.FreeParameters();
   fit.variance_factor = freedom > 0.0 ? sum / freedom : 1.0;
   return fit;
 }
@@ -333,9 +337,7 @@ Eigen::Vector2d ProjectBoardPoint(const BundleState& state, const CalibrationTar
   BoardPoint(place, state.board.warp_m.data(), offset.data(), behind_m, p.data());
   const Eigen::Vector3d p_camera =
       c.T_camera_rig * (state.T_rig_board[static_cast<std::size_t>(view)] * p);
-  Eigen::Vector2d pixel = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  ProjectLens(c.kind, c.lens.data(), p_camera.data(), pixel.data());
-  return pixel;
+  return ProjectRay(c.kind, c.lens, p_camera);
 }
 
 Result<BundleFit> SolveBundle(const CalibrationTarget& target,

@@ -43,7 +43,7 @@ class CalibBoardTest : public ::testing::Test {
     return result;
   }
   Result<TargetCalibration> CalibrateOne(CalibratedStream stream) {
-    Result<ImageSeries> series = ReadImageFolder(folder_, stream, kNoProgress);
+    Result<ImageSeries> series = ReadImageFolder(folder_, {stream, {}}, kNoProgress);
     if (!series) return Err(series.error());
     return Calibrate(ViewsOf(std::move(*series)), {std::string(ToString(stream))}, "thesis-board");
   }
@@ -68,8 +68,8 @@ class CalibBoardTest : public ::testing::Test {
                     const BundleCamera& truth) {
     const auto index = static_cast<std::size_t>(camera);
     const Eigen::Vector2i& size = calibration.sizes_px[index];
-    const auto opencv = CalibrateWithOpenCv(calibration.target, calibration.detections[index],
-                                            size.x(), size.y(), true);
+    const auto opencv = CalibrateWithOpenCv(calibration.target, calibration.detections[index], size,
+                                            LensKind::kBrownConrady);
     const ProjectionMap ours = CompareProjections(truth, calibration.state.cameras[index], size);
     const ProjectionMap theirs = CompareProjections(
         truth, {LensKind::kBrownConrady, opencv->lens, RigidTransform::Identity()}, size);
@@ -115,8 +115,10 @@ TEST_F(CalibBoardTest, InfraredProjectionIsThatOfTheRenderer) {
 }
 
 TEST_F(CalibBoardTest, PoseBetweenTheCamerasIsThatOfTheRenderer) {
-  Result<ImageSeries> infrared = ReadImageFolder(folder_, CalibratedStream::kInfrared, kNoProgress);
-  Result<ImageSeries> thermal = ReadImageFolder(folder_, CalibratedStream::kThermal, kNoProgress);
+  Result<ImageSeries> infrared =
+      ReadImageFolder(folder_, {CalibratedStream::kInfrared, {}}, kNoProgress);
+  Result<ImageSeries> thermal =
+      ReadImageFolder(folder_, {CalibratedStream::kThermal, {}}, kNoProgress);
   ASSERT_TRUE(infrared.has_value() && thermal.has_value());
   const auto result = Calibrate(PairViews(std::move(*infrared), std::move(*thermal)),
                                 {"depth", "thermal"}, "thesis-board");
@@ -150,7 +152,7 @@ class CalibMaskTest : public CalibBoardTest {
 
 TEST_F(CalibMaskTest, NearlyAllImagesCountAndFocalLengthsAreThoseOfTheOwners) {
   Result<ImageSeries> series =
-      ReadImageFolder(folder_ / "images", CalibratedStream::kThermal, kNoProgress);
+      ReadImageFolder(folder_ / "images", {CalibratedStream::kThermal, {}}, kNoProgress);
   ASSERT_TRUE(series.has_value()) << series.error().message();
   const auto result =
       Calibrate(ViewsOf(std::move(*series)), {"thermal"}, "square-holes 6x4 0.02 hole=0.01");

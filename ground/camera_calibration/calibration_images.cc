@@ -7,12 +7,14 @@
 #include <span>
 
 #include "common/base/read_file.h"
+#include "common/base/units.h"
 #include "common/codec/codec.h"
 #include "common/dataset/dataset.h"
 #include "common/dataset/text_lines.h"
 #include "common/frame/frame.h"
 #include "common/png/png.h"
 #include "common/recording/recording.h"
+#include "ground/camera_calibration/board_image.h"
 
 namespace isotherm {
 namespace {
@@ -30,6 +32,12 @@ Image<float> ToFloat(const Image<T>& values) {
     image.pixels()[i] = none ? kNoValue : static_cast<float>(value);
   }
   return image;
+}
+
+Image<float> InMillimetres(Image<float> depth, double depth_scale) {
+  const auto mm_per_unit = static_cast<float>(kMmPerM / depth_scale);
+  for (float& value : depth.pixels()) value *= mm_per_unit;
+  return depth;
 }
 
 template <typename T, typename Decode>
@@ -92,10 +100,11 @@ std::optional<Image<float>> ImageOf(const RecordedItem& item, CalibratedStream s
     return image ? std::optional(ToFloat(*image)) : std::nullopt;
   }
   const auto* depth = std::get_if<RecordedDepth>(&item);
-  if (depth == nullptr || stream == CalibratedStream::kThermal) return std::nullopt;
+  if (depth == nullptr || stream != CalibratedStream::kDepth) return std::nullopt;
   const auto image = Decode(depth->frame.image);
   time_s = ToSeconds(depth->frame.header.capture_time.time_since_epoch());
-  return image ? std::optional(ToFloat(*image)) : std::nullopt;
+  if (!image) return std::nullopt;
+  return CalibrationImage(*image, depth->frame.depth_scale);
 }
 
 double Overlap(const NamedImage& a, const NamedImage& b) {
@@ -116,9 +125,24 @@ std::string_view ToString(CalibratedStream stream) {
   return "";
 }
 
+StillPoseOptions StillPosesOf(CalibratedStream stream) {
+  StillPoseOptions options;
+  options.is_depth = stream == CalibratedStream::kDepth;
+  return options;
+}
+
 Image<float> CalibrationImage(const Image<std::uint16_t>& counts) { return ToFloat(counts); }
 
-NamedImage NamedImageOf(StillPose pose, std::string name) {
+Image<float> CalibrationImage(const Image<std::uint16_t>& depth_raw, double depth_scale) {
+  return InMillimetres(ToFloat(depth_raw), depth_scale);
+}
+
+NamedImage NamedImageOf(StillPose pose, std::string name, const CalibrationStream& stream) {
+  if (stream.stream == CalibratedStream::kDepth) {
+    pose.mean = BoardImage(pose.samples, stream.target);
+    // Rims of single depth images wander; how far is in the mean's blur.
+    pose.samples.clear();
+  }
   return {std::move(name), pose.begin_s,         pose.end_s,
           pose.frames,     std::move(pose.mean), std::move(pose.samples)};
 }
@@ -133,24 +157,30 @@ Result<Image<float>> ReadCalibrationImage(const std::filesystem::path& path) {
   return image;
 }
 
-Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder, CalibratedStream stream,
+Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder,
+                                    const CalibrationStream& stream,
                                     const std::function<void(double)>& progress) {
-  const auto files = FilesOf(folder, stream);
+  const auto files = FilesOf(folder, stream.stream);
   if (!files) return Err(files.error());
   if (files->empty())
     return Err(NotFound(fmt::format("{}: there is no PNG file and no {}.txt that names some",
-                                    folder.string(), ToString(stream))));
-  ImageSeries series{folder.string(), {}, {}};
+                                    folder.string(), ToString(stream.stream))));
+  ImageSeries series;
+  series.source = folder.string();
   constexpr int kAnyNumber = 1;
-  StillPoseFinder finder({.min_frames = kAnyNumber});
+  StillPoseOptions options = StillPosesOf(stream.stream);
+  options.min_frames = kAnyNumber;
+  StillPoseFinder finder(options);
   std::string name;
   const auto add = [&](std::optional<StillPose> pose) {
-    if (pose) series.images.push_back(NamedImageOf(std::move(*pose), name));
+    if (pose) series.images.push_back(NamedImageOf(std::move(*pose), name, stream));
   };
   for (std::size_t i = 0; i < files->size(); ++i) {
     const auto& [path, time_s] = (*files)[i];
     Result<Image<float>> image = ReadCalibrationImage(path);
     if (!image) return Err(image.error());
+    if (stream.stream == CalibratedStream::kDepth)
+      *image = InMillimetres(std::move(*image), stream.depth_scale);
     std::optional<StillPose> ended = finder.Add(time_s, *image);
     if (ended) add(std::move(ended));
     if (name.empty() || finder.frames() == 1) name = path.filename().string();
@@ -160,21 +190,24 @@ Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder, Calibra
   return series;
 }
 
-Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, CalibratedStream stream,
+Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording,
+                                   const CalibrationStream& stream,
                                    const std::function<void(double)>& progress) {
   const auto reader = RecordingReader::Open(recording);
   if (!reader) return Err(reader.error());
-  ImageSeries series{recording.string(), {}, {}};
+  ImageSeries series;
+  series.source = recording.string();
   if (const Result<Rig> rig = (*reader)->ReadRig(); rig)
-    series.serial = stream == CalibratedStream::kThermal ? rig->thermal_serial : rig->depth_serial;
+    series.serial =
+        stream.stream == CalibratedStream::kThermal ? rig->thermal_serial : rig->depth_serial;
   std::uint64_t total = 0, read = 0, frames = 0;
   for (const auto& [topic, count] : (*reader)->info().messages_by_topic) total += count;
-  StillPoseFinder finder({});
+  StillPoseFinder finder(StillPosesOf(stream.stream));
   std::optional<double> start_s;
   const auto add = [&](std::optional<StillPose> pose) {
     if (!pose) return;
     std::string name = NameOf(pose->begin_s - *start_s);
-    series.images.push_back(NamedImageOf(std::move(*pose), std::move(name)));
+    series.images.push_back(NamedImageOf(std::move(*pose), std::move(name), stream));
   };
   while (true) {
     const Result<std::optional<RecordedItem>> item = (*reader)->Next();
@@ -183,7 +216,7 @@ Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, Calib
       progress(std::min(1.0, static_cast<double>(read) / static_cast<double>(total)));
     if (!item) continue;  // What of a damaged recording cannot be read is not needed either.
     double time_s = 0.0;
-    const std::optional<Image<float>> image = ImageOf(**item, stream, time_s);
+    const std::optional<Image<float>> image = ImageOf(**item, stream.stream, time_s);
     if (!image) continue;
     ++frames;
     if (!start_s) start_s = time_s;
@@ -191,7 +224,7 @@ Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, Calib
   }
   if (frames == 0) {
     return Err(FailedPrecondition(fmt::format("{}: there are no {} frames in the recording",
-                                              recording.string(), ToString(stream))));
+                                              recording.string(), ToString(stream.stream))));
   }
   add(finder.Finish());
   if (series.images.empty()) {
@@ -199,7 +232,7 @@ Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, Calib
         FailedPrecondition(fmt::format("{}: in none of its {} {} frames anything rests: hold the "
                                        "target still for a second in each "
                                        "pose, best on a stand",
-                                       recording.string(), frames, ToString(stream))));
+                                       recording.string(), frames, ToString(stream.stream))));
   }
   return series;
 }

@@ -8,6 +8,7 @@
 #include "common/base/status.h"
 #include "common/frame/image.h"
 #include "ground/camera_calibration/still_poses.h"
+#include "ground/camera_calibration/target.h"
 #include "ground/camera_calibration/target_calibration.h"
 
 namespace isotherm {
@@ -34,19 +35,33 @@ std::string_view ToString(CalibratedStream stream);
 /// Reads a grey PNG with 8 or 16 bits per pixel; of 16 bits, 0 has no value, nor has 65535.
 Result<Image<float>> ReadCalibrationImage(const std::filesystem::path& path);
 
+/// Says what is read.
+struct CalibrationStream {
+  CalibratedStream stream = CalibratedStream::kThermal;
+  /// Depth becomes images of its holes (BoardImage); for depth it must have some.
+  CalibrationTarget target;
+  double depth_scale = 1000.0;  ///< Units per metre of depth images in a folder.
+};
+
 /// Reads a folder: the images that its list (thermal.txt, depth.txt or infrared.txt) names, or else
 /// its PNG files by name. Neighbours that look alike are averaged.
-Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder, CalibratedStream stream,
+Result<ImageSeries> ReadImageFolder(const std::filesystem::path& folder,
+                                    const CalibrationStream& stream,
                                     const std::function<void(double)>& progress);
 
 /// Reads the poses of a recording in which nothing moved (StillPoseFinder).
-Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording, CalibratedStream stream,
+Result<ImageSeries> ReadStillPoses(const std::filesystem::path& recording,
+                                   const CalibrationStream& stream,
                                    const std::function<void(double)>& progress);
 
-/// A frame's image: 0 and 65535 have no value.
+/// How still poses are found in a stream.
+StillPoseOptions StillPosesOf(CalibratedStream stream);
+/// A thermal frame's image: 0 and 65535 have no value.
 Image<float> CalibrationImage(const Image<std::uint16_t>& counts);
-/// A still pose as an image.
-NamedImage NamedImageOf(StillPose pose, std::string name);
+/// A depth frame's, in millimetres.
+Image<float> CalibrationImage(const Image<std::uint16_t>& depth_raw, double depth_scale);
+/// A still pose as an image: that of depth shows the target's holes.
+NamedImage NamedImageOf(StillPose pose, std::string name, const CalibrationStream& stream);
 
 /// One camera's images as views.
 std::vector<CalibrationView> ViewsOf(ImageSeries series);

@@ -57,10 +57,10 @@ void AddOpenCv(const TargetCalibration& calibration, int camera, CalibratedCamer
     if (!view.empty()) views.push_back(view);
   }
   const Result<OpenCvCalibration> opencv =
-      CalibrateWithOpenCv(calibration.target, views, report.size_px.x(), report.size_px.y(), true);
+      CalibrateWithOpenCv(calibration.target, views, report.size_px, report.camera.kind);
   if (!opencv) return;
   report.opencv = *opencv;
-  const BundleCamera other{LensKind::kBrownConrady, opencv->lens, RigidTransform::Identity()};
+  const BundleCamera other{report.camera.kind, opencv->lens, RigidTransform::Identity()};
   report.off_opencv_px = CompareProjections(report.camera, other, report.size_px).Rms(true);
 }
 

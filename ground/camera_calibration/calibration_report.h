@@ -19,6 +19,9 @@ struct CalibratedCamera {
   std::string name;
   BundleCamera camera;
   Eigen::Vector2i size_px = Eigen::Vector2i::Zero();
+  /// By how much the principal point of a depth camera's infrared images, which these are, exceeds
+  /// that of its depth images, which the rig file holds.
+  Eigen::Vector2d infrared_shift_px = Eigen::Vector2d::Zero();
   int views = 0, features = 0;
   ReprojectionError error;
   Eigen::MatrixXd covariance;  ///< The lens's parameters; it is reported and written.

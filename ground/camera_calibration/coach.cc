@@ -55,9 +55,11 @@ std::string CoachStatus::Line() const {
 }
 
 CalibrationCoach::CalibrationCoach(const CalibrationTarget& target,
-                                   std::vector<std::string> camera_names)
+                                   std::vector<std::string> camera_names,
+                                   const std::vector<LensKind>& lenses)
     : target_(target), cameras_(camera_names.size()), status_(camera_names.size()) {
   for (std::size_t i = 0; i < camera_names.size(); ++i) {
+    cameras_[i].lens = lenses[i];
     status_[i].camera = std::move(camera_names[i]);
     status_[i].missing = ViewCoverage({1, 1}).Missing();
   }
@@ -87,7 +89,7 @@ void CalibrationCoach::Update(int camera) {
   state.cameras.front().T_camera_rig = RigidTransform::Identity();
   bool solved = false;
   if (c.views.size() >= kMinForLens) {
-    const auto start = CalibrateWithOpenCv(target_, c.views, c.size_px.x(), c.size_px.y(), false);
+    const auto start = StartWithOpenCv(target_, c.views, c.size_px);
     if (start) {
       state.cameras.front().lens = start->lens;
       state.T_rig_board = start->T_camera_board;
@@ -105,11 +107,12 @@ void CalibrationCoach::Update(int camera) {
   status.missing = coverage.Missing();
   status.uncertainty_px = status.max_uncertainty_px = std::nullopt;
   if (!solved || c.views.size() < kMinForUncertainty) return;
+  state.cameras.front() = AsStart(state.cameras.front().lens, c.lens);
   const std::vector<FeatureObservation> observations = Observations(c.views);
   if (!SolveBundle(target_, observations, {}, state)) return;
   const Result<ReducedSystem> system = ReduceBundle(target_, observations, {}, state);
   if (!system) return;
-  const int lens = LensParameterCount(LensKind::kBrownConrady);
+  const int lens = LensParameterCount(c.lens);
   const ProjectionMap sigmas = ProjectionSigmas(
       state.cameras.front(), system->Covariance().topLeftCorner(lens, lens), c.size_px);
   status.uncertainty_px = sigmas.Rms(true);

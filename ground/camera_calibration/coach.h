@@ -35,7 +35,9 @@ struct CoachStatus {
 /// as the final measurement. Thread-compatible.
 class CalibrationCoach {
  public:
-  CalibrationCoach(const CalibrationTarget& target, std::vector<std::string> camera_names);
+  /// `lenses` by camera.
+  CalibrationCoach(const CalibrationTarget& target, std::vector<std::string> camera_names,
+                   const std::vector<LensKind>& lenses);
 
   /// One camera's image of a pose.
   void Add(int camera, const Image<float>& image);
@@ -45,6 +47,7 @@ class CalibrationCoach {
 
  private:
   struct Camera {
+    LensKind lens = LensKind::kBrownConrady;
     Eigen::Vector2i size_px = Eigen::Vector2i::Zero();
     std::vector<std::vector<Eigen::Vector2d>> views;
   };

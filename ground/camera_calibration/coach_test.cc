@@ -17,7 +17,7 @@ TEST(CalibrationCoachTest, UncertaintyShrinksAndLessIsMissingAsViewsCome) {
   session.seed = 12;
   ThreadPool pool(2);
   const CalibrationInput input = TakeViews(session, pool);
-  CalibrationCoach coach(input.target, {"thermal"});
+  CalibrationCoach coach(input.target, {"thermal"}, input.lenses);
   const std::size_t missing_at_start = coach.status().front().missing.size();
   std::vector<double> uncertainties;
   for (const CalibrationView& view : input.views) {
@@ -44,7 +44,7 @@ TEST(CalibrationCoachTest, ViewsOfTheMiddleAloneLeaveCornersAndTiltsMissing) {
       .min_distance_m = 1.2, .max_distance_m = 1.3, .max_tilt_deg = 3.0, .border_px = 70.0};
   ThreadPool pool(2);
   const CalibrationInput input = TakeViews(session, pool);
-  CalibrationCoach coach(input.target, {"thermal"});
+  CalibrationCoach coach(input.target, {"thermal"}, input.lenses);
   for (const CalibrationView& view : input.views) coach.Add(0, view.images.front());
   const CoachStatus& status = coach.status().front();
   EXPECT_EQ(status.views, 3);
@@ -54,7 +54,7 @@ TEST(CalibrationCoachTest, ViewsOfTheMiddleAloneLeaveCornersAndTiltsMissing) {
 }
 
 TEST(CalibrationCoachTest, ImagesWithoutTheTargetAreCountedWithTheReason) {
-  CalibrationCoach coach(*ParseTarget("thesis-board"), {"thermal"});
+  CalibrationCoach coach(*ParseTarget("thesis-board"), {"thermal"}, {LensKind::kBrownConrady});
   coach.Add(0, Image<float>(382, 288, 30000.0F));
   EXPECT_EQ(coach.status().front().views, 0);
   EXPECT_EQ(coach.status().front().refused, 1);

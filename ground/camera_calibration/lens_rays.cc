@@ -4,8 +4,43 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace isotherm {
+namespace {
+
+/// The members of `camera` that a lens's parameters are, in their order.
+template <typename Camera>
+auto Members(LensKind kind, Camera& c) {
+  using Member = decltype(&c.fx);
+  std::vector<Member> members = {&c.fx, &c.fy, &c.cx, &c.cy, &c.k1, &c.k2};
+  if (kind == LensKind::kFisheye) {
+    members.insert(members.end(), {&c.k3, &c.k4});
+    return members;
+  }
+  members.insert(members.end(), {&c.p1, &c.p2, &c.k3});
+  if (kind == LensKind::kRational) members.insert(members.end(), {&c.k4, &c.k5, &c.k6});
+  return members;
+}
+
+}  // namespace
+
+LensParameters ParametersOf(const CameraModel& camera) {
+  LensParameters lens{};
+  std::size_t i = 0;
+  for (const double* member : Members(camera.lens, camera)) lens[i++] = *member;
+  return lens;
+}
+
+CameraModel CameraOf(LensKind kind, const LensParameters& lens, const Eigen::Vector2i& size_px) {
+  CameraModel camera;
+  camera.width = size_px.x();
+  camera.height = size_px.y();
+  camera.lens = kind;
+  std::size_t i = 0;
+  for (double* member : Members(kind, camera)) *member = lens[i++];
+  return camera;
+}
 
 Eigen::Vector2d ProjectRay(LensKind kind, const LensParameters& lens, const Eigen::Vector3d& ray) {
   Eigen::Vector2d pixel = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());

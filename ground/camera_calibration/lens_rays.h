@@ -7,6 +7,10 @@
 
 namespace isotherm {
 
+/// A camera's lens as calibrations have it, and back.
+LensParameters ParametersOf(const CameraModel& camera);
+CameraModel CameraOf(LensKind kind, const LensParameters& lens, const Eigen::Vector2i& size_px);
+
 /// Pixel at which a lens shows a direction of its camera's optical frame; NaN behind it.
 Eigen::Vector2d ProjectRay(LensKind kind, const LensParameters& lens, const Eigen::Vector3d& ray);
 

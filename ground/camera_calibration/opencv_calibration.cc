@@ -33,32 +33,75 @@ RigidTransform ToTransform(const cv::Mat& rotation_vector, const cv::Mat& transl
       {translation.at<double>(0), translation.at<double>(1), translation.at<double>(2)}, rotation);
 }
 
-}  // namespace
-
-Result<OpenCvCalibration> CalibrateWithOpenCv(
-    const CalibrationTarget& target, const std::vector<std::vector<Eigen::Vector2d>>& views,
-    int width, int height, bool full) {
-  const std::vector<std::vector<cv::Point3f>> boards(views.size(), BoardPoints(target));
+struct BoardViews {
+  std::vector<std::vector<cv::Point3f>> boards;
   std::vector<std::vector<cv::Point2f>> pixels;
-  for (const auto& view : views) pixels.push_back(ToOpenCv(view));
+};
+
+/// Holds what OpenCV's calibrations return.
+struct Found {
   cv::Mat matrix, distortion;
   std::vector<cv::Mat> rotations, translations;
-  const int flags = full ? 0 : cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
+};
+
+/// `calibrate` is given BoardViews and Found and returns the error, pixels.
+template <typename Function>
+Result<OpenCvCalibration> Calibrate(const CalibrationTarget& target,
+                                    const std::vector<std::vector<Eigen::Vector2d>>& views,
+                                    int coefficients, const Function& calibrate) {
+  BoardViews points{{views.size(), BoardPoints(target)}, {}};
+  for (const auto& view : views) points.pixels.push_back(ToOpenCv(view));
+  Found found;
   OpenCvCalibration result;
   try {
-    result.rms_px = cv::calibrateCamera(boards, pixels, {width, height}, matrix, distortion,
-                                        rotations, translations, flags);
+    result.rms_px = calibrate(points, found);
   } catch (const cv::Exception& e) {
     return Err(FailedPrecondition(
         fmt::format("OpenCV finds no camera that explains these views ({})", e.err)));
   }
+  const cv::Mat& matrix = found.matrix;
   result.lens = {matrix.at<double>(0, 0), matrix.at<double>(1, 1), matrix.at<double>(0, 2),
                  matrix.at<double>(1, 2)};
-  for (int i = 0; i < 5; ++i)
-    result.lens[static_cast<std::size_t>(4 + i)] = distortion.at<double>(i);
+  for (int i = 0; i < coefficients; ++i)
+    result.lens[static_cast<std::size_t>(4 + i)] = found.distortion.at<double>(i);
   for (std::size_t i = 0; i < views.size(); ++i)
-    result.T_camera_board.push_back(ToTransform(rotations[i], translations[i]));
+    result.T_camera_board.push_back(ToTransform(found.rotations[i], found.translations[i]));
   return result;
+}
+
+Result<OpenCvCalibration> CalibratePolynomial(
+    const CalibrationTarget& target, const std::vector<std::vector<Eigen::Vector2d>>& views,
+    const Eigen::Vector2i& size_px, int flags, int coefficients) {
+  return Calibrate(target, views, coefficients, [&](auto& points, auto& found) {
+    return cv::calibrateCamera(points.boards, points.pixels, {size_px.x(), size_px.y()},
+                               found.matrix, found.distortion, found.rotations, found.translations,
+                               flags);
+  });
+}
+
+}  // namespace
+
+Result<OpenCvCalibration> CalibrateWithOpenCv(
+    const CalibrationTarget& target, const std::vector<std::vector<Eigen::Vector2d>>& views,
+    const Eigen::Vector2i& size_px, LensKind kind) {
+  if (kind == LensKind::kFisheye)
+    return Calibrate(target, views, 4, [&](auto& points, auto& found) {
+      // Without the flag the board's rotations depend on the distortion of before.
+      return cv::fisheye::calibrate(
+          points.boards, points.pixels, {size_px.x(), size_px.y()}, found.matrix, found.distortion,
+          found.rotations, found.translations,
+          cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW);
+    });
+  const bool rational = kind == LensKind::kRational;
+  return CalibratePolynomial(target, views, size_px, rational ? cv::CALIB_RATIONAL_MODEL : 0,
+                             rational ? 8 : 5);
+}
+
+Result<OpenCvCalibration> StartWithOpenCv(const CalibrationTarget& target,
+                                          const std::vector<std::vector<Eigen::Vector2d>>& views,
+                                          const Eigen::Vector2i& size_px) {
+  return CalibratePolynomial(target, views, size_px, cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST,
+                             5);
 }
 
 RigidTransform FindPose(const CalibrationTarget& target,

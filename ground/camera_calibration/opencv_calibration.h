@@ -15,11 +15,16 @@ struct OpenCvCalibration {
   double rms_px = 0.0;
 };
 
-/// OpenCV's calibrateCamera. `full`: all five coefficients of distortion, else only two radial ones
-/// and the focal lengths, which few or poor views determine as well: where others start.
+/// OpenCV's calibrateCamera, or fisheye::calibrate, with all the coefficients that the lens has.
 Result<OpenCvCalibration> CalibrateWithOpenCv(
     const CalibrationTarget& target, const std::vector<std::vector<Eigen::Vector2d>>& views,
-    int width, int height, bool full);
+    const Eigen::Vector2i& size_px, LensKind kind);
+
+/// Two radial coefficients of Brown and Conrady's and the focal lengths alone, which few or poor
+/// views determine as well: where others start.
+Result<OpenCvCalibration> StartWithOpenCv(const CalibrationTarget& target,
+                                          const std::vector<std::vector<Eigen::Vector2d>>& views,
+                                          const Eigen::Vector2i& size_px);
 
 /// The pose of a flat target before a camera with a known lens, from centres of images of features.
 RigidTransform FindPose(const CalibrationTarget& target,

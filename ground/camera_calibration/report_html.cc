@@ -28,17 +28,25 @@ std::string ParameterTable(const CalibratedCamera& report) {
       html += fmt::format("<td>{:.6g} &plusmn; {:.2g}</td>", subset.camera.lens[index],
                           std::sqrt(subset.covariance(i, i)));
     for (std::size_t missing = report.subsets.size(); missing < 2; ++missing) html += "<td>-</td>";
-    html += report.opencv && report.camera.kind == LensKind::kBrownConrady
-                ? fmt::format("<td>{:.6g}</td></tr>\n", report.opencv->lens[index])
-                : "<td>-</td></tr>\n";
+    html += report.opencv ? fmt::format("<td>{:.6g}</td></tr>\n", report.opencv->lens[index])
+                          : "<td>-</td></tr>\n";
   }
   return html + "</table>\n";
 }
 
 std::string CameraHtml(const CalibratedCamera& report) {
   constexpr double kMagnified = 100.0, kDistance_m = 0.6;
-  std::string html = fmt::format("<h2>{} camera</h2>\n", EscapeHtml(report.name));
+  std::string html = fmt::format("<h2>{} camera, {} lens</h2>\n", EscapeHtml(report.name),
+                                 ToString(report.camera.kind));
   html += ParameterTable(report);
+  if (report.infrared_shift_px.any()) {
+    html += fmt::format(
+        "<p>The rig file has the principal point of depth images: cx {:.2f}, cy {:.2f}, that is "
+        "{:.2f} and {:.2f} px less than these infrared ones'.</p>\n",
+        report.camera.lens[2] - report.infrared_shift_px.x(),
+        report.camera.lens[3] - report.infrared_shift_px.y(), report.infrared_shift_px.x(),
+        report.infrared_shift_px.y());
+  }
   html += HtmlFigure(
       SvgMap(report.sigmas, "px"),
       fmt::format("Uncertainty of the projection (one standard deviation, after the best "

@@ -43,7 +43,9 @@ Json CameraJson(const CalibratedCamera& report) {
   json["features"] = report.features;
   json["rms_px"] = report.error.rms_px;
   json["mae_px"] = report.error.mae_px;
+  json["lens_model"] = std::string(ToString(report.camera.kind));
   json["lens"] = LensJson(report.camera);
+  json["infrared_shift_px"] = {report.infrared_shift_px.x(), report.infrared_shift_px.y()};
   json["covariance"] = MatrixJson(report.covariance);
   json["bootstrap_covariance"] = MatrixJson(report.bootstrap.Covariance());
   json["uncertainty_px"] = report.sigmas.Rms(true);
@@ -64,7 +66,7 @@ Json CameraJson(const CalibratedCamera& report) {
   }
   json["missing"] = report.missing;
   if (report.opencv) {
-    json["opencv"] = {{"lens", LensJson({LensKind::kBrownConrady, report.opencv->lens, {}})},
+    json["opencv"] = {{"lens", LensJson({report.camera.kind, report.opencv->lens, {}})},
                       {"rms_px", report.opencv->rms_px},
                       {"difference_px", report.off_opencv_px}};
   }

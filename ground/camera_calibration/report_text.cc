@@ -75,12 +75,19 @@ std::string OpenCv(const CalibratedCamera& report) {
 
 std::string CameraText(const CalibratedCamera& report) {
   std::string text = fmt::format(
-      "{} camera, {} x {} pixels: {} views, {} features, reprojection error {:.3f} px rms, {:.3f} "
-      "px "
-      "mean\n",
-      report.name, report.size_px.x(), report.size_px.y(), report.views, report.features,
-      report.error.rms_px, report.error.mae_px);
+      "{} camera, {} x {} pixels, {} lens: {} views, {} features, reprojection error {:.3f} px "
+      "rms, {:.3f} px mean\n",
+      report.name, report.size_px.x(), report.size_px.y(), ToString(report.camera.kind),
+      report.views, report.features, report.error.rms_px, report.error.mae_px);
   text += Parameters(report) + Certainty(report) + Subsets(report) + OpenCv(report);
+  if (report.infrared_shift_px.any()) {
+    text += fmt::format(
+        "  of its depth images: cx {:.2f} cy {:.2f}, {:.2f} and {:.2f} px less than of these "
+        "infrared ones (--infrared-shift)\n",
+        report.camera.lens[2] - report.infrared_shift_px.x(),
+        report.camera.lens[3] - report.infrared_shift_px.y(), report.infrared_shift_px.x(),
+        report.infrared_shift_px.y());
+  }
   for (const std::string& missing : report.missing) text += fmt::format("  missing: {}\n", missing);
   return text;
 }

@@ -5,6 +5,7 @@
 #include "common/rig/rig_calibration.h"
 #include "common/rig/rig_calibration.pb.h"
 #include "common/rig/rig_calibration_file.h"
+#include "ground/camera_calibration/lens_rays.h"
 
 namespace isotherm {
 namespace {
@@ -40,20 +41,10 @@ CalibrationRecord CameraRecord(const CalibrationReport& report, const Calibrated
 }
 
 CameraIntrinsics Intrinsics(const CalibratedCamera& report) {
-  const LensParameters& lens = report.camera.lens;
-  CameraIntrinsics intrinsics;
-  intrinsics.set_width(report.size_px.x());
-  intrinsics.set_height(report.size_px.y());
-  intrinsics.set_fx(lens[0]);
-  intrinsics.set_fy(lens[1]);
-  intrinsics.set_cx(lens[2]);
-  intrinsics.set_cy(lens[3]);
-  intrinsics.set_k1(lens[4]);
-  intrinsics.set_k2(lens[5]);
-  intrinsics.set_p1(lens[6]);
-  intrinsics.set_p2(lens[7]);
-  intrinsics.set_k3(lens[8]);
-  return intrinsics;
+  CameraModel camera = CameraOf(report.camera.kind, report.camera.lens, report.size_px);
+  camera.cx -= report.infrared_shift_px.x();
+  camera.cy -= report.infrared_shift_px.y();
+  return ToProto(camera);
 }
 
 Status CheckSerial(const std::string& in_file, const std::string& measured, std::string_view name) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <vector>
 
 #include "ground/camera_calibration/resampling.h"
 
@@ -63,7 +65,10 @@ Result<TargetCalibration> CalibrateFromSubset(const TargetCalibration& calibrati
     const auto first =
         subset == FeatureSubset::kNearBorders ? observations.end() - half : observations.begin();
     const auto end = subset == FeatureSubset::kNearMiddle ? first + half : observations.end();
-    chosen.insert(chosen.end(), first, end);
+    std::vector<int> features;
+    std::transform(first, end, std::back_inserter(features),
+                   [](const auto& o) { return o.feature; });
+    if (single.target.TellPose(features)) chosen.insert(chosen.end(), first, end);
   }
   return Recalibrate(single, chosen);
 }

@@ -6,6 +6,8 @@
 
 #include "common/base/noise.h"
 #include "common/base/units.h"
+#include "ground/camera_calibration/board_image.h"
+#include "ground/camera_calibration/lens_rays.h"
 
 namespace isotherm {
 namespace {
@@ -21,10 +23,15 @@ Image<float> AsFloat(const Image<T>& values) {
 }
 
 Image<float> TakeDepthImage(const TargetCamera& camera, const TargetSession& session,
-                            const RigidTransform& pose, std::uint64_t stream) {
+                            const CalibrationTarget& target, const RigidTransform& pose,
+                            std::uint64_t stream) {
   if (session.depth_images == TargetSession::DepthImages::kInfrared)
     return AsFloat(camera.Infrared(session.board, pose, stream));
-  return AsFloat(camera.Depth(session.board, pose, stream));
+  constexpr int kFrames = 8;
+  std::vector<Image<float>> frames;
+  for (std::uint64_t i = 0; i < kFrames; ++i)
+    frames.push_back(AsFloat(camera.Depth(session.board, pose, MixBits(stream + i))));
+  return BoardImage(frames, target);
 }
 
 }  // namespace
@@ -67,24 +74,29 @@ RigidTransform ThesisThermalFromDepth() {
   return MakeTransform({0.0485, 0.0533, 0.0115}, rotation);
 }
 
-BundleCamera ToBundle(const CameraModel& c) {
-  return {LensKind::kBrownConrady,
-          {c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3},
-          RigidTransform::Identity()};
+BundleCamera ToBundle(const CameraModel& camera) {
+  return {camera.lens, ParametersOf(camera), RigidTransform::Identity()};
 }
 
 CalibrationInput TakeViews(const TargetSession& session, ThreadPool& pool) {
-  const std::vector<TargetObserver> observers = {{ThesisDepth()},
-                                                 {ThesisThermal(), ThesisThermalFromDepth()}};
+  // Poses that both cameras see, as for a rig, but of a wide lens, whose corners the depth camera
+  // does not see.
+  std::vector<TargetObserver> observers;
+  if (session.depth || session.thermal_camera.lens == LensKind::kBrownConrady)
+    observers.push_back({ThesisDepth()});
+  observers.push_back({session.thermal_camera, ThesisThermalFromDepth()});
   const auto poses =
       SampleTargetViews(session.board, observers, session.count, session.views, session.seed);
   const TargetCamera depth(ThesisDepth(), session.cameras);
-  const TargetCamera thermal(ThesisThermal(), session.cameras);
+  const TargetCamera thermal(session.thermal_camera, session.cameras);
   CalibrationInput input;
   input.target = *ParseTarget("thesis-board");
-  if (session.depth) input.camera_names.emplace_back("depth");
-  if (session.thermal) input.camera_names.emplace_back("thermal");
-  input.lenses.assign(input.camera_names.size(), LensKind::kBrownConrady);
+  const auto add = [&](const char* name, LensKind lens) {
+    input.camera_names.emplace_back(name);
+    input.lenses.push_back(lens);
+  };
+  if (session.depth) add("depth", ThesisDepth().lens);
+  if (session.thermal) add("thermal", session.thermal_camera.lens);
   input.views.resize(poses.size());
   pool.ParallelFor(static_cast<int>(poses.size()), [&](int i) {
     const auto index = static_cast<std::size_t>(i);
@@ -92,8 +104,8 @@ CalibrationInput TakeViews(const TargetSession& session, ThreadPool& pool) {
     view.name = fmt::format("view {}", i);
     constexpr std::uint64_t kDepth = 1, kThermal = 2;
     if (session.depth)
-      view.images.push_back(
-          TakeDepthImage(depth, session, poses[index], NoiseStream(session.seed, kDepth, index)));
+      view.images.push_back(TakeDepthImage(depth, session, input.target, poses[index],
+                                           NoiseStream(session.seed, kDepth, index)));
     if (session.thermal)
       view.images.push_back(
           AsFloat(thermal.Thermal(session.board, ThesisThermalFromDepth() * poses[index],

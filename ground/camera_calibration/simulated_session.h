@@ -26,6 +26,8 @@ struct TargetSession {
   int count = 30;
   std::uint64_t seed = 1;
   bool thermal = true, depth = false;
+  CameraModel thermal_camera = ThesisThermal();
+  /// kDepth: images of the holes from eight depth images each (BoardImage).
   enum class DepthImages { kInfrared, kDepth } depth_images = DepthImages::kInfrared;
 };
 

@@ -92,7 +92,7 @@ Result<CameraStart> StartCamera(const CalibrationInput& input, const std::vector
   const auto index = static_cast<std::size_t>(camera);
   const Image<float>& image = input.views[static_cast<std::size_t>(views.front())].images[index];
   const Result<OpenCvCalibration> start =
-      CalibrateWithOpenCv(input.target, features, image.width(), image.height(), false);
+      StartWithOpenCv(input.target, features, {image.width(), image.height()});
   if (!start) return Err(start.error());
   if (const double spread = SpreadDegrees(start->T_camera_board); spread < kMinSpread_deg) {
     return Err(FailedPrecondition(fmt::format(
@@ -101,12 +101,7 @@ Result<CameraStart> StartCamera(const CalibrationInput& input, const std::vector
         views.size(), input.camera_names[index], spread)));
   }
   CameraStart result;
-  result.camera.kind = input.lenses[index];
-  result.camera.lens = start->lens;
-  if (result.camera.kind == LensKind::kFisheye) {
-    // Polynomials of another thing: a fisheye begins without any.
-    for (std::size_t i = 4; i < result.camera.lens.size(); ++i) result.camera.lens[i] = 0.0;
-  }
+  result.camera = AsStart(start->lens, input.lenses[index]);
   for (std::size_t i = 0; i < views.size(); ++i)
     result.T_camera_board[views[i]] = start->T_camera_board[i];
   return result;
@@ -135,6 +130,13 @@ std::optional<RigidTransform> MiddlePose(const std::map<int, RigidTransform>& T_
 }
 
 }  // namespace
+
+BundleCamera AsStart(const LensParameters& found, LensKind kind) {
+  BundleCamera camera{kind, found, RigidTransform::Identity()};
+  // Polynomials of another thing: a fisheye begins without any.
+  if (kind == LensKind::kFisheye) std::fill(camera.lens.begin() + 4, camera.lens.end(), 0.0);
+  return camera;
+}
 
 Result<std::vector<SeenTarget>> DetectInAll(const CalibrationInput& input, ThreadPool& pool,
                                             const std::function<void(double)>& progress,

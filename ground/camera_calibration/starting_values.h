@@ -20,6 +20,9 @@ struct SeenTarget {
   DetectedTarget detected;
 };
 
+/// Returns what a lens of `kind` begins with, from a Brown-Conrady one that OpenCV found.
+BundleCamera AsStart(const LensParameters& found, LensKind kind);
+
 struct StartingValues {
   BundleState state;
 };

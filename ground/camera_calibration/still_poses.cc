@@ -50,9 +50,42 @@ bool LookAlike(const Image<float>& a, const Image<float>& b) {
   return tail <= std::max(kMaxSigmas * sigma, 2.0);
 }
 
+double MovedFraction(const Image<float>& a, const Image<float>& b) {
+  if (a.width() != b.width() || a.height() != b.height() || a.empty()) return 1.0;
+  // Five standard deviations of the noise of two images of a PrimeSense-like camera, which grows
+  // with the square of the depth; at 0.9 m less than from the thesis's board to the plate behind
+  // it, and less than from a wall to a board anywhere.
+  constexpr float kPerSquare = 1e-5F;  // 1 / mm: 10 mm at 1 m.
+  constexpr float kMinTolerance_mm = 4.0F;
+  const auto is_like = [&](int x, int y) {
+    const float depth = a.At(x, y);
+    const float tolerance = std::max(kMinTolerance_mm, kPerSquare * depth * depth);
+    for (int v = std::max(0, y - 1); v <= std::min(b.height() - 1, y + 1); ++v) {
+      for (int u = std::max(0, x - 1); u <= std::min(b.width() - 1, x + 1); ++u) {
+        const float other = b.At(u, v);
+        if (std::isnan(other) || std::abs(depth - other) <= tolerance) return true;
+      }
+    }
+    return false;
+  };
+  std::size_t moved = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      if (!std::isnan(a.At(x, y)) && !is_like(x, y)) ++moved;
+  return static_cast<double>(moved) / static_cast<double>(a.size());
+}
+
+bool StillPoseFinder::IsSame(const Image<float>& image) const {
+  if (!options_.is_depth) return LookAlike(last_, image);
+  // A board that moved by a pixel and a half, of whose image the holes' rims are a hundredth for
+  // each pixel.
+  constexpr double kMaxMoved = 0.005;
+  return MovedFraction(pose_.samples.front(), image) <= kMaxMoved;
+}
+
 std::optional<StillPose> StillPoseFinder::Add(double time_s, const Image<float>& image) {
   std::optional<StillPose> ended;
-  if (pose_.frames > 0 && !LookAlike(last_, image)) ended = Close();
+  if (pose_.frames > 0 && !IsSame(image)) ended = Close();
   Take(time_s, image);
   last_ = image;
   return ended;
@@ -70,7 +103,11 @@ void StillPoseFinder::Take(double time_s, const Image<float>& image) {
   if (pose_.frames >= options_.max_frames) return;
   // Eight of max_frames: enough for the scatter of one, cheap enough to measure each.
   constexpr int kEvery = 5;
-  if (pose_.frames % kEvery == 0) pose_.samples.push_back(image);
+  // Of depth the first eight: rims need each.
+  constexpr int kDepthSamples = 8;
+  const bool is_sample =
+      options_.is_depth ? pose_.frames < kDepthSamples : pose_.frames % kEvery == 0;
+  if (is_sample) pose_.samples.push_back(image);
   ++pose_.frames;
   for (std::size_t i = 0; i < image.size(); ++i) {
     const float value = image.pixels()[i];

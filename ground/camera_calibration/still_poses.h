@@ -13,6 +13,8 @@ struct StillPoseOptions {
   /// So many frames in a row must be alike for a pose; of more, the first `max_frames` count.
   int min_frames = 8;
   int max_frames = 40;
+  /// Images are depth in millimetres, whose edges flicker though nothing moves.
+  bool is_depth = false;
 };
 
 /// Holds what was seen while the target stood still: the mean image, and single frames, which show
@@ -25,8 +27,8 @@ struct StillPose {
 };
 
 /// Finds, in a stream of images, where nothing moves: neighbouring images differ by noise only, and
-/// not at edges. Offsets that all pixels have in common do not count. NaN has no value.
-/// Thread-compatible.
+/// not at edges. Offsets that all pixels have in common do not count. Depth images are compared
+/// with the pose's first one (MovedFraction). NaN has no value. Thread-compatible.
 class StillPoseFinder {
  public:
   explicit StillPoseFinder(const StillPoseOptions& options) : options_(options) {}
@@ -39,6 +41,7 @@ class StillPoseFinder {
   int frames() const { return pose_.frames; }
 
  private:
+  bool IsSame(const Image<float>& image) const;
   std::optional<StillPose> Close();
   void Take(double time_s, const Image<float>& image);
 
@@ -51,5 +54,10 @@ class StillPoseFinder {
 
 /// Returns whether two images of one camera differ by noise only.
 bool LookAlike(const Image<float>& a, const Image<float>& b);
+
+/// The fraction of the pixels of two depth images, in millimetres, that show in one what none of
+/// the nine pixels around has in the other: what moved by more than an edge flickers. Pixels
+/// without a value do not count; 1 for different sizes.
+double MovedFraction(const Image<float>& a, const Image<float>& b);
 
 }  // namespace isotherm

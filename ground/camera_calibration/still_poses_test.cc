@@ -68,6 +68,60 @@ TEST(StillPosesTest, TwoRestsGiveTwoPosesAndMotionNone) {
   EXPECT_GE(poses[0].samples.size(), 2U);
 }
 
+/// A board with holes 13 mm before a plate, millimetres; which of both their rims show flickers.
+Image<float> HolesInDepth(double shift_px, std::uint64_t stream) {
+  Image<float> image(160, 120);
+  std::uint64_t counter = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      constexpr double kPitch_px = 20.0, kRadius_px = 6.0, kWander_px = 0.7;
+      const auto wander = kWander_px * static_cast<double>(NormalNoise(stream, counter++));
+      const double u = std::fmod(x + shift_px + 2.0 * kPitch_px, kPitch_px) - 0.5 * kPitch_px;
+      const double v = std::fmod(y + 0.5, kPitch_px) - 0.5 * kPitch_px;
+      const float depth = std::hypot(u, v) + wander < kRadius_px ? 713.0F : 700.0F;
+      image.At(x, y) = depth + NormalNoise(stream, counter++);
+    }
+  }
+  return image;
+}
+
+TEST(StillPosesTest, RimsThatFlickerInDepthAreNoMotion) {
+  const auto frames = [](double per_frame_px) {
+    StillPoseFinder finder({.min_frames = 8, .is_depth = true});
+    int longest = 0;
+    for (int i = 0; i < 10; ++i) {
+      finder.Add(i, HolesInDepth(per_frame_px * i, static_cast<std::uint64_t>(i)));
+      longest = std::max(longest, finder.frames());
+    }
+    return longest;
+  };
+  EXPECT_EQ(frames(0.0), 10);
+  EXPECT_LT(frames(0.3), 8) << "three pixels in ten frames";
+  EXPECT_LT(frames(2.0), 4);
+  StillPoseFinder finder({.min_frames = 8, .is_depth = true});
+  for (int i = 0; i < 9; ++i) finder.Add(i, HolesInDepth(0.0, static_cast<std::uint64_t>(i)));
+  const auto pose = finder.Finish();
+  ASSERT_TRUE(pose.has_value());
+  EXPECT_EQ(pose->samples.size(), 8U) << "each is needed for the rims";
+}
+
+TEST(StillPosesTest, ImagesOfOnePoseEachAreNotTakenForOnePose) {
+  StillPoseFinder finder({.min_frames = 1, .is_depth = true});
+  int poses = 0;
+  for (const double shift_px : {0.0, 3.0, 8.0, 5.0})
+    poses += finder.Add(shift_px, HolesInDepth(shift_px, 7)).has_value() ? 1 : 0;
+  poses += finder.Finish().has_value() ? 1 : 0;
+  EXPECT_EQ(poses, 4);
+}
+
+TEST(StillPosesTest, PixelsWithoutDepthAreNoMotion) {
+  Image<float> holes = HolesInDepth(0.0, 1), other = HolesInDepth(0.0, 2);
+  for (std::size_t i = 0; i < holes.size(); i += 3) holes.pixels()[i] = std::nanf("");
+  for (std::size_t i = 1; i < other.size(); i += 4) other.pixels()[i] = std::nanf("");
+  EXPECT_LT(MovedFraction(holes, other), 0.005);
+  EXPECT_EQ(MovedFraction(holes, Image<float>(80, 60, 700.0F)), 1.0);
+}
+
 TEST(StillPosesTest, OfALongRestTheFirstFramesCount) {
   StillPoseFinder finder({.min_frames = 5, .max_frames = 10});
   for (int i = 0; i < 30; ++i)

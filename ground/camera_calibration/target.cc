@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -123,6 +125,20 @@ std::optional<int> CalibrationTarget::Mirrored(int feature) const {
   if (pattern != Pattern::kAsymmetricCircles) return row * columns + columns - 1 - column;
   if (rows % 2 == 0) return std::nullopt;
   return (rows - 1 - row) * columns + column;
+}
+
+bool CalibrationTarget::TellPose(const std::vector<int>& some) const {
+  constexpr std::size_t kMinFeatures = 8;
+  if (some.size() < kMinFeatures) return false;
+  Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(some.size()));
+  for (std::size_t i = 0; i < some.size(); ++i)
+    places.col(static_cast<Eigen::Index>(i)) = FeaturePosition(some[i]);
+  const Eigen::Matrix2Xd off = places.colwise() - places.rowwise().mean();
+  const Eigen::Matrix2d scatter = off * off.transpose() / static_cast<double>(some.size());
+  // The spread across: two neighbouring lines have half of their distance.
+  constexpr double kMinSpread = 0.4;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(scatter, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[0])) >= kMinSpread * square_m;
 }
 
 Result<CalibrationTarget> ParseTarget(std::string_view spec) {

@@ -47,6 +47,8 @@ struct CalibrationTarget {
   /// The feature that `feature` becomes in a mirror image of the target; in an asymmetric grid only
   /// if the number of rows is odd.
   std::optional<int> Mirrored(int feature) const;
+  /// Returns whether some features tell the pose: eight or more that are not nearly on one line.
+  bool TellPose(const std::vector<int>& some) const;
 };
 
 /// Reads "PATTERN COLUMNSxROWS SQUARE [hole=M] [thickness=M] [placement=M] [warp=M] [bright|dark]",

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "common/base/units.h"
 #include "ground/camera_calibration/starting_values.h"
 
 namespace isotherm {
@@ -90,18 +91,37 @@ class Calibrator {
     if (input_.target.HasHoles()) LearnHoles(measured, round);
   }
 
+  /// Says if the camera looks into a hole by less than kMaxAside from its axis. From farther aside
+  /// walls and edges hide a part of what is behind that the model, which has one wall of one
+  /// brightness, does not know: with holes up to 70 degrees aside lenses were 0.03 px off where
+  /// 0.012 px was said (ten simulated sessions).
+  bool IsSeenFromFront(const SeenTarget& seen, int feature) const {
+    constexpr double kMaxAside = 45.0 * kRadPerDeg;
+    const RigidTransform T_camera_board =
+        result_.state.cameras[static_cast<std::size_t>(seen.camera)].T_camera_rig *
+        result_.state.T_rig_board[static_cast<std::size_t>(seen.view)];
+    const Eigen::Vector2d xy = input_.target.FeaturePosition(feature);
+    const Eigen::Vector3d line_of_sight = T_camera_board * Eigen::Vector3d(xy.x(), xy.y(), 0.0);
+    return line_of_sight.normalized().dot(T_camera_board.linear().col(2)) > std::cos(kMaxAside);
+  }
+
   std::vector<FeatureMeasurement> MeasureImage(const SeenTarget& seen) const {
     const Image<float>& image = ImageOf(seen);
     if (!input_.target.HasHoles())
       return MeasureCorners(image, seen.detected.features, input_.target, seen.camera, seen.view);
-    std::vector<FeatureMeasurement> features;
+    std::vector<FeatureMeasurement> all, from_front;
+    std::vector<int> in_front;
     for (int i = 0; i < input_.target.features(); ++i) {
       const auto measurement = MeasureHole(
           image, result_.state, input_.target, result_.holes[static_cast<std::size_t>(seen.camera)],
           seen.camera, seen.view, i, seen.detected.features[static_cast<std::size_t>(i)]);
-      if (measurement) features.push_back(*measurement);
+      if (!measurement) continue;
+      all.push_back(*measurement);
+      if (input_.target.thickness_m > 0.0 && !IsSeenFromFront(seen, i)) continue;
+      from_front.push_back(*measurement);
+      in_front.push_back(i);
     }
-    return features;
+    return input_.target.TellPose(in_front) ? from_front : all;
   }
 
   /// Takes over from all holes what they have in common: it is known better from all of them than

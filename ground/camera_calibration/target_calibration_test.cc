@@ -6,9 +6,12 @@
 #include <cmath>
 
 #include "common/base/units.h"
+#include "common/rig/rig_calibration.h"
+#include "common/testing/temporary_directory.h"
 #include "ground/camera_calibration/calibration_report.h"
 #include "ground/camera_calibration/projection_map.h"
 #include "ground/camera_calibration/resampling.h"
+#include "ground/camera_calibration/rig_file.h"
 #include "ground/camera_calibration/sensitivity.h"
 #include "ground/camera_calibration/simulated_session.h"
 #include "ground/camera_calibration/transfer.h"
@@ -62,7 +65,7 @@ TEST_F(ThermalCalibrationTest, ProjectionIsWithinTheRequirementOfTheTrueOne) {
 TEST_F(ThermalCalibrationTest, OpenCvOnTheSameImagesIsFarOffAtASmallResidual) {
   std::vector<std::vector<Eigen::Vector2d>> views = calibration().detections.front();
   const auto opencv =
-      CalibrateWithOpenCv(calibration().target, views, size().x(), size().y(), true);
+      CalibrateWithOpenCv(calibration().target, views, size(), LensKind::kBrownConrady);
   ASSERT_TRUE(opencv.has_value());
   const BundleCamera other{LensKind::kBrownConrady, opencv->lens, RigidTransform::Identity()};
   EXPECT_LE(opencv->rms_px, 0.2);
@@ -176,6 +179,98 @@ TEST_F(ThermalCalibrationTest, WhatCannotBeCalibratedFromIsRefusedInASentence) {
   CalibrationInput parallel = *input_;
   for (CalibrationView& view : parallel.views) view.images[0] = input_->views[0].images[0];
   EXPECT_THAT(Calibrate(parallel).error().message(), HasSubstr("parallel"));
+}
+
+TEST_F(ThermalCalibrationTest, TheRigFileHasThePrincipalPointOfDepthImages) {
+  CalibrationReport report = MakeReport(calibration(), {"depth"}, {.bootstrap_samples = 100});
+  report.cameras.front().infrared_shift_px = {5.0, 4.0};
+  const testing::TemporaryDirectory folder;
+  const std::filesystem::path file = folder.path() / "rig.textproto";
+  ASSERT_TRUE(UpdateRigFile(file, report, {""}).ok());
+  const Result<Rig> rig = LoadRigCalibration(file);
+  ASSERT_TRUE(rig.has_value()) << rig.error().message();
+  EXPECT_DOUBLE_EQ(rig->depth->cx, camera().lens[2] - 5.0);
+  EXPECT_DOUBLE_EQ(rig->depth->cy, camera().lens[3] - 4.0);
+  EXPECT_DOUBLE_EQ(rig->depth->fx, camera().lens[0]);
+  EXPECT_DOUBLE_EQ(rig->depth->k3, camera().lens[8]);
+  EXPECT_THAT(ReportText(report), HasSubstr("5.00 and 4.00 px less"));
+}
+
+/// A camera of 120 degrees across.
+CameraModel WideCamera(LensKind lens) {
+  CameraModel camera;
+  camera.width = 382;
+  camera.height = 288;
+  camera.fx = 182.0;
+  camera.fy = 182.6;
+  camera.cx = 194.5;
+  camera.cy = 140.5;
+  camera.lens = lens;
+  if (lens == LensKind::kFisheye) {
+    camera.k1 = -0.03, camera.k2 = 0.01, camera.k3 = -0.004, camera.k4 = 0.001;
+  } else {
+    camera.k1 = 0.778, camera.k2 = 0.068, camera.k3 = 0.002;
+    camera.p1 = 0.0004, camera.p2 = -0.0003;
+    camera.k4 = 1.11, camera.k5 = 0.238, camera.k6 = 0.004;
+  }
+  return camera;
+}
+
+class WideLensTest : public ::testing::TestWithParam<LensKind> {};
+
+TEST_P(WideLensTest, IsCalibratedByItsModelAndNotByAnother) {
+  TargetSession session;
+  session.board = WarpedBoard(0.0012, 5);
+  session.count = 20;
+  session.seed = 5;
+  session.thermal_camera = WideCamera(GetParam());
+  session.views.min_distance_m = 0.35;  // Nearer: the target has to reach the corners.
+  session.views.max_distance_m = 0.7;
+  ThreadPool pool(2);
+  CalibrationInput input = TakeViews(session, pool);
+  const auto result = Calibrate(input);
+  ASSERT_TRUE(result.has_value()) << result.error().message();
+  const BundleCamera truth = ToBundle(session.thermal_camera);
+  const Eigen::Vector2i size = result->sizes_px.front();
+  const ProjectionMap off = CompareProjections(truth, result->state.cameras.front(), size);
+  EXPECT_LE(off.Rms(true), 0.12);
+  EXPECT_LE(off.Max(true), 0.5);
+  EXPECT_LE(ReprojectionErrorOf(*result, 0).rms_px, 0.12);
+  const auto opencv =
+      CalibrateWithOpenCv(result->target, result->detections.front(), size, GetParam());
+  ASSERT_TRUE(opencv.has_value()) << opencv.error().message();
+  const BundleCamera theirs{GetParam(), opencv->lens, RigidTransform::Identity()};
+  EXPECT_LE(CompareProjections(theirs, truth, size).Rms(true), 0.8) << "the same coefficients";
+
+  input.lenses.front() = LensKind::kBrownConrady;
+  const auto other = Calibrate(input);
+  ASSERT_TRUE(other.has_value()) << other.error().message();
+  EXPECT_GE(CompareProjections(truth, other->state.cameras.front(), size).Rms(true), 1.0);
+  const double own_px = ReprojectionErrorOf(*result, 0).rms_px;
+  const double other_px = ReprojectionErrorOf(*other, 0).rms_px;
+  EXPECT_LE(other_px, 0.1) << "a small error proves nothing";
+  EXPECT_GE(other_px, 2.0 * own_px) << "but that of the right model is smaller";
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, WideLensTest,
+                         ::testing::Values(LensKind::kRational, LensKind::kFisheye));
+
+TEST(DepthCalibrationTest, HolesInDepthAloneTellTheLens) {
+  TargetSession session;
+  session.board = WarpedBoard(0.0012, 8);
+  session.count = 18;
+  session.seed = 8;
+  session.thermal = false;
+  session.depth = true;
+  session.depth_images = TargetSession::DepthImages::kDepth;
+  ThreadPool pool(2);
+  const auto result = Calibrate(TakeViews(session, pool));
+  ASSERT_TRUE(result.has_value()) << result.error().message();
+  EXPECT_LE(result->refused.size(), 2U);
+  const ProjectionMap off = CompareProjections(
+      ToBundle(ThesisDepth()), result->state.cameras.front(), result->sizes_px.front());
+  EXPECT_LE(off.Rms(true), 0.4);
+  EXPECT_LE(off.Max(true), 0.8);
 }
 
 TEST(RigCalibrationTest, PoseBetweenTheCamerasIsWithinTheRequirement) {

@@ -207,6 +207,7 @@ Status CheckSaturation(const Image<float>& image, const std::vector<Eigen::Vecto
   }
   if (values.empty()) return OkStatus();
   const float largest = *std::max_element(values.begin(), values.end());
+  if (largest <= 1.0F) return OkStatus();  // Fractions (BoardImage): 1 is no end of a range.
   const auto at_largest = std::count(values.begin(), values.end(), largest);
   // A sound image has few pixels at its largest value; where a fifth has it, the range cut it off.
   constexpr double kMaxPart = 0.2;

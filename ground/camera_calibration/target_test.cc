@@ -58,5 +58,20 @@ TEST(TargetTest, WhatIsWrongIsSaidWithAnExample) {
   }
 }
 
+TEST(TargetTest, FeaturesOnALineTellNoPose) {
+  const CalibrationTarget target = *ParseTarget("symmetric-circles 10x9 0.05");
+  const auto every = [](int first, int step, int count) {
+    std::vector<int> features;
+    for (int i = 0; i < count; ++i) features.push_back(first + step * i);
+    return features;
+  };
+  EXPECT_FALSE(target.TellPose(every(0, 1, 10))) << "a row";
+  EXPECT_FALSE(target.TellPose(every(3, 10, 9))) << "a column";
+  EXPECT_FALSE(target.TellPose(every(0, 11, 9))) << "the diagonal";
+  EXPECT_FALSE(target.TellPose({0, 1, 10, 11}));
+  EXPECT_TRUE(target.TellPose(every(0, 1, 20)));
+  EXPECT_TRUE(target.TellPose({0, 1, 10, 11, 20, 21, 30, 31}));
+}
+
 }  // namespace
 }  // namespace isotherm

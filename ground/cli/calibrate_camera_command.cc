@@ -24,21 +24,16 @@ Examples:
   isotherm calibrate thermal scan.mcap -o rig.textproto --report calibration
   isotherm calibrate thermal --live --edge-id edge -o rig.textproto
   isotherm calibrate thermal --images thermal/ --target "asymmetric-circles 4x9 0.05 thickness=0.001"
+  isotherm calibrate thermal scan.mcap --lens fisheye -o rig.textproto
+  isotherm calibrate depth scan.mcap -o rig.textproto                    by the holes, in depth itself
   isotherm calibrate depth --infrared --images infrared/ --target "chessboard 8x6 0.03" -o rig.textproto)";
 
-struct CameraArguments {
-  TargetArguments target;
-  bool infrared = false;
-};
-
-int RunCalibrateCamera(const CameraArguments& arguments, bool thermal) {
-  const CalibratedStream stream = thermal              ? CalibratedStream::kThermal
-                                  : arguments.infrared ? CalibratedStream::kInfrared
-                                                       : CalibratedStream::kDepth;
-  Result<std::vector<ImageSeries>> series = ReadSeries(arguments.target, {stream});
+int RunCalibrateCamera(const TargetArguments& arguments, bool thermal) {
+  const CalibratedStream stream = thermal ? CalibratedStream::kThermal : DepthStream(arguments);
+  Result<std::vector<ImageSeries>> series = ReadSeries(arguments, {stream});
   if (!series) return Fail(series.error());
   const std::string serial = series->front().serial;
-  const Status status = CalibrateAndReport(arguments.target, {thermal ? "thermal" : "depth"},
+  const Status status = CalibrateAndReport(arguments, {thermal ? "thermal" : "depth"},
                                            ViewsOf(std::move(series->front())), {serial});
   return status.ok() ? 0 : Fail(status);
 }
@@ -47,12 +42,9 @@ void AddCamera(CLI::App& calibrate, CommandBody& body, bool thermal) {
   CLI::App* command = calibrate.add_subcommand(
       thermal ? "thermal" : "depth", thermal ? "The lens of the thermal camera, with a target"
                                              : "The lens of the depth camera, with a target");
-  auto arguments = std::make_shared<CameraArguments>();
-  AddTargetArguments(*command, arguments->target);
-  if (!thermal) {
-    command->add_flag("--infrared", arguments->infrared,
-                      "The images are the camera's infrared images, not depth");
-  }
+  auto arguments = std::make_shared<TargetArguments>();
+  AddTargetArguments(*command, *arguments);
+  if (!thermal) AddDepthArguments(*command, *arguments);
   command->footer(kCalibrateCameraFooter + std::string(TargetHelp()) + kCalibrateCameraExamples);
   command->callback([arguments, thermal, &body] {
     body = [arguments, thermal] { return RunCalibrateCamera(*arguments, thermal); };

@@ -24,22 +24,14 @@ Examples:
   isotherm calibrate rig --live --target thesis-board -o rig.textproto
   isotherm calibrate rig --images calibration/ --infrared -o rig.textproto)";
 
-struct RigArguments {
-  TargetArguments target;
-  bool infrared = false;
-};
-
-int RunCalibrateRig(const RigArguments& arguments) {
+int RunCalibrateRig(const TargetArguments& arguments) {
   Result<std::vector<ImageSeries>> series =
-      ReadSeries(arguments.target,
-                 {arguments.infrared ? CalibratedStream::kInfrared : CalibratedStream::kDepth,
-                  CalibratedStream::kThermal});
+      ReadSeries(arguments, {DepthStream(arguments), CalibratedStream::kThermal});
   if (!series) return Fail(series.error());
   ImageSeries &depth = series->front(), &thermal = series->back();
   const std::vector<std::string> serials = {depth.serial, thermal.serial};
-  const Status status =
-      CalibrateAndReport(arguments.target, {"depth", "thermal"},
-                         PairViews(std::move(depth), std::move(thermal)), serials);
+  const Status status = CalibrateAndReport(
+      arguments, {"depth", "thermal"}, PairViews(std::move(depth), std::move(thermal)), serials);
   return status.ok() ? 0 : Fail(status);
 }
 
@@ -48,10 +40,16 @@ int RunCalibrateRig(const RigArguments& arguments) {
 void AddCalibrateRigCommand(CLI::App& calibrate, CommandBody& body) {
   CLI::App* command = calibrate.add_subcommand(
       "rig", "Both lenses and the pose between the cameras, with a target");
-  auto arguments = std::make_shared<RigArguments>();
-  AddTargetArguments(*command, arguments->target);
-  command->add_flag("--infrared", arguments->infrared,
-                    "The depth camera's images are infrared images, not depth");
+  auto arguments = std::make_shared<TargetArguments>();
+  AddTargetArguments(*command, *arguments);
+  AddDepthArguments(*command, *arguments);
+  command->get_option("--lens")->description(
+      "Model of the thermal camera's lens: brown-conrady up to some 90 degrees of view, rational "
+      "or "
+      "fisheye for wider ones");
+  command->add_option("--depth-lens", arguments->depth_lens, "The same of the depth camera")
+      ->check(CLI::IsMember({"brown-conrady", "rational", "fisheye"}))
+      ->capture_default_str();
   command->footer(kCalibrateRigFooter + std::string(TargetHelp()) + kCalibrateRigExamples);
   command->callback(
       [arguments, &body] { body = [arguments] { return RunCalibrateRig(*arguments); }; });

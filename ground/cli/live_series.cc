@@ -25,25 +25,28 @@ constexpr std::size_t kMaxPoses = 200;
 /// Keeps the poses of some streams. Belongs to the thread that receives.
 class PoseKeeper {
  public:
-  PoseKeeper(const CalibrationTarget& target, const std::vector<CalibratedStream>& streams)
-      : coach_(target, Names(streams)) {
-    for (const CalibratedStream stream : streams)
-      streams_.push_back({stream, StillPoseFinder({}), {"live", {}, {}}, 0});
+  PoseKeeper(const CalibrationTarget& target, const std::vector<CalibratedStream>& streams,
+             const std::vector<LensKind>& lenses)
+      : coach_(target, Names(streams), lenses) {
+    for (const CalibratedStream stream : streams) {
+      CalibrationStream read;
+      read.stream = stream;
+      read.target = target;
+      streams_.emplace_back(std::move(read));
+    }
   }
 
-  void Take(CalibratedStream stream, const FrameHeader& header,
-            const Image<std::uint16_t>& counts) {
+  void Take(CalibratedStream stream, const FrameHeader& header, const Image<float>& image) {
     for (std::size_t i = 0; i < streams_.size(); ++i) {
-      if (streams_[i].stream != stream) continue;
-      const double time_s = ToSeconds(header.capture_time.time_since_epoch());
-      Keep(i, streams_[i].finder.Add(time_s, CalibrationImage(counts)));
+      if (streams_[i].read.stream != stream) continue;
+      Keep(i, streams_[i].finder.Add(ToSeconds(header.capture_time.time_since_epoch()), image));
     }
   }
 
   void Take(const RigDescription& rig) {
     for (Stream& stream : streams_)
       stream.series.serial =
-          stream.stream == CalibratedStream::kThermal ? rig.thermal.serial : rig.depth.serial;
+          stream.read.stream == CalibratedStream::kThermal ? rig.thermal.serial : rig.depth.serial;
   }
 
   bool is_full() const {
@@ -59,7 +62,7 @@ class PoseKeeper {
         return Err(FailedPrecondition(fmt::format(
             "no pose was kept of the {} images: hold the target still for a second in each pose, "
             "best on a stand",
-            ToString(streams_[i].stream))));
+            ToString(streams_[i].read.stream))));
       }
       all.push_back(std::move(streams_[i].series));
     }
@@ -68,7 +71,12 @@ class PoseKeeper {
 
  private:
   struct Stream {
-    CalibratedStream stream;
+    explicit Stream(CalibrationStream what)
+        : read(std::move(what)), finder(StillPosesOf(read.stream)) {
+      series.source = "live";
+    }
+
+    CalibrationStream read;
     StillPoseFinder finder;
     ImageSeries series;
     int refused = 0;  ///< Poses of which that was said.
@@ -83,7 +91,9 @@ class PoseKeeper {
   void Keep(std::size_t index, std::optional<StillPose> pose) {
     if (!pose) return;
     Stream& stream = streams_[index];
-    coach_.Add(static_cast<int>(index), pose->mean);
+    std::string name = fmt::format("pose {}", stream.series.images.size() + 1);
+    stream.series.images.push_back(NamedImageOf(std::move(*pose), std::move(name), stream.read));
+    coach_.Add(static_cast<int>(index), stream.series.images.back().image);
     const CoachStatus& status = coach_.status()[index];
     std::string line = status.Line();
     if (status.refused > stream.refused) {
@@ -92,8 +102,6 @@ class PoseKeeper {
     }
     fmt::print("{}\n", line);
     std::fflush(stdout);
-    std::string name = fmt::format("pose {}", stream.series.images.size() + 1);
-    stream.series.images.push_back(NamedImageOf(std::move(*pose), std::move(name)));
   }
 
   CalibrationCoach coach_;
@@ -104,7 +112,8 @@ class PoseKeeper {
 
 Result<std::vector<ImageSeries>> TakeLiveSeries(const RigAddress& address,
                                                 const CalibrationTarget& target,
-                                                const std::vector<CalibratedStream>& streams) {
+                                                const std::vector<CalibratedStream>& streams,
+                                                const std::vector<LensKind>& lenses) {
   StopSignal signal;  // Before any other thread.
   SubscriberOptions options;
   options.ground_id = "calibrate";
@@ -115,14 +124,16 @@ Result<std::vector<ImageSeries>> TakeLiveSeries(const RigAddress& address,
     return OkStatus();
   });
   if (!found.ok()) return Err(found);
-  PoseKeeper poses(target, streams);
+  PoseKeeper poses(target, streams, lenses);
   SubscriberHandlers handlers;
   handlers.thermal = [&](const ReceivedThermal& thermal) {
     if (thermal.frame->valid)
-      poses.Take(CalibratedStream::kThermal, thermal.frame->header, thermal.frame->temperature_raw);
+      poses.Take(CalibratedStream::kThermal, thermal.frame->header,
+                 CalibrationImage(thermal.frame->temperature_raw));
   };
   handlers.depth = [&](const ReceivedDepth& depth) {
-    poses.Take(CalibratedStream::kDepth, depth.frame->header, depth.frame->depth_raw);
+    poses.Take(CalibratedStream::kDepth, depth.frame->header,
+               CalibrationImage(depth.frame->depth_raw, depth.frame->depth_scale));
   };
   handlers.rig = [&](const RigDescription& rig) { poses.Take(rig); };
   handlers.turn = [&] {

@@ -18,18 +18,28 @@ namespace isotherm {
 struct TargetArguments {
   std::string recording, images;
   std::string target = "thesis-board";
-  std::string lens = "brown-conrady";
-  std::string rig;     ///< File to write or update.
+  std::string lens = "brown-conrady";        ///< In a rig the thermal camera's.
+  std::string depth_lens = "brown-conrady";  ///< The depth camera's in a rig.
+  std::string rig;                           ///< File to write or update.
   std::string report;  ///< Folder for report.txt, report.json and report.html.
   int bootstrap = 2000;
   int threads = 0;
-  bool live = false;  ///< From a running rig, which `address` names.
+  double depth_scale = 1000.0;  ///< Units per metre of depth images in a folder.
+  bool live = false;            ///< From a running rig, which `address` names.
+  bool infrared = false;        ///< The depth camera's images are infrared images.
+  std::vector<double> infrared_shift_px = {5.0, 4.0};  ///< In images 640 pixels wide.
   RigAddress address;
 };
 
 void AddTargetArguments(CLI::App& command, TargetArguments& arguments);
+/// Adds what commands that calibrate a depth camera have, too.
+void AddDepthArguments(CLI::App& command, TargetArguments& arguments);
 
-/// Reads cameras' images: from the folder, the recording, or a running rig. By stream.
+/// Returns what a depth camera is calibrated on.
+CalibratedStream DepthStream(const TargetArguments& arguments);
+
+/// Reads cameras' images: from the folder, the recording, or a running rig; of depth, images of the
+/// target's holes. By stream.
 Result<std::vector<ImageSeries>> ReadSeries(const TargetArguments& arguments,
                                             const std::vector<CalibratedStream>& streams);
 
