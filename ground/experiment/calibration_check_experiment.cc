@@ -18,9 +18,9 @@ namespace isotherm {
 namespace {
 
 constexpr int kScans = 10;
-constexpr double kDuration_s = 12.0;
+constexpr double kDuration_s = 30.0;
 // A NUC in the middle of the scan.
-constexpr double kNuc_s = 6.0;
+constexpr double kNuc_s = 15.0;
 // As a depth camera behind a bad cable: 0.4 s of each second are missing.
 constexpr double kGap_s = 0.4;
 

@@ -66,6 +66,7 @@ void DescribeCamera(const TargetCalibration& calibration, int camera, const Bund
 struct WorstOff {
   double thermal_px = 0.0, thermal_max_px = 0.0, depth_px = 0.0;
   double opencv_thermal_px = 1e9, opencv_depth_px = 1e9;
+  double holes_in_depth_px = 0.0, opencv_holes_in_depth_px = 1e9;
   double degrees = 0.0, mm = 0.0, transfer_px = 0.0;
   double within_sum = 0.0;
   int within_count = 0;
@@ -107,6 +108,24 @@ void MeasurePose(const TargetCalibration& calibration, WorstOff& worst) {
   }
 }
 
+/// The depth camera of the same session by its depth images instead of its infrared ones. OpenCV is
+/// held against warped boards only.
+Status MeasureHolesInDepth(TargetSession session, bool warped, ThreadPool& pool, WorstOff& worst) {
+  session.thermal = false;
+  session.depth_images = TargetSession::DepthImages::kDepth;
+  const auto calibration = CalibrateWithTarget(TakeViews(session, pool), pool, [](double) {});
+  if (!calibration) return calibration.error();
+  const CalibrationReport made = MakeReport(*calibration, {"depth"}, {});
+  const BundleCamera truth = ToBundle(ThesisDepth());
+  const CalibratedCamera& depth = made.cameras.front();
+  const double off = CompareProjections(truth, depth.camera, depth.size_px).Rms(true);
+  worst.holes_in_depth_px = std::max(worst.holes_in_depth_px, off);
+  if (!warped) return OkStatus();
+  const double opencv = CompareProjections(truth, OpenCvCamera(depth), depth.size_px).Rms(true);
+  worst.opencv_holes_in_depth_px = std::min(worst.opencv_holes_in_depth_px, opencv);
+  return OkStatus();
+}
+
 void Require(const WorstOff& worst, ExperimentReport& report) {
   const auto most = [&](const char* what, double measured, double limit, const char* unit) {
     report.requirements.push_back({what, measured, Requirement::Sense::kAtMost, limit, unit});
@@ -123,6 +142,10 @@ void Require(const WorstOff& worst, ExperimentReport& report) {
            "px");
   report.requirements.push_back(
       NegativeControl(depth, "the same by OpenCV, best warped session", worst.opencv_depth_px));
+  const Requirement holes = most("depth camera by holes in depth alone, the same, worst session",
+                                 worst.holes_in_depth_px, 0.5, "px");
+  report.requirements.push_back(NegativeControl(holes, "the same by OpenCV, best warped session",
+                                                worst.opencv_holes_in_depth_px));
   report.requirements.push_back({"pixels at which the truth is within two standard deviations",
                                  100.0 * worst.within_sum / worst.within_count,
                                  Requirement::Sense::kAtLeast, 90.0, "%"});
@@ -167,6 +190,8 @@ Result<ExperimentReport> RunCalibrationExperiment(ThreadPool& pool) {
       worst.opencv_thermal_px = before.opencv_thermal_px;
     }
     MeasurePose(*calibration, worst);
+    Status measured = MeasureHolesInDepth(session, i >= kWarped, pool, worst);
+    if (!measured.ok()) return Err(measured);
     if (i != kSessions / 2) continue;
     DescribeCamera(*calibration, 0, ToBundle(ThesisDepth()), made.cameras[0], report);
     DescribeCamera(*calibration, 1, ToBundle(ThesisThermal()), made.cameras[1], report);
