@@ -22,6 +22,10 @@ struct CalibratedCamera {
   /// By how much the principal point of a depth camera's infrared images, which these are, exceeds
   /// that of its depth images, which the rig file holds.
   Eigen::Vector2d infrared_shift_px = Eigen::Vector2d::Zero();
+  /// The principal point that the rig file gets.
+  Eigen::Vector2d WrittenPrincipalPoint() const {
+    return Eigen::Vector2d(camera.lens[2], camera.lens[3]) - infrared_shift_px;
+  }
   int views = 0, features = 0;
   ReprojectionError error;
   Eigen::MatrixXd covariance;  ///< The lens's parameters; it is reported and written.

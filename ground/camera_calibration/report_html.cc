@@ -40,12 +40,11 @@ std::string CameraHtml(const CalibratedCamera& report) {
                                  ToString(report.camera.kind));
   html += ParameterTable(report);
   if (report.infrared_shift_px.any()) {
+    const Eigen::Vector2d written = report.WrittenPrincipalPoint();
     html += fmt::format(
         "<p>The rig file has the principal point of depth images: cx {:.2f}, cy {:.2f}, that is "
         "{:.2f} and {:.2f} px less than these infrared ones'.</p>\n",
-        report.camera.lens[2] - report.infrared_shift_px.x(),
-        report.camera.lens[3] - report.infrared_shift_px.y(), report.infrared_shift_px.x(),
-        report.infrared_shift_px.y());
+        written.x(), written.y(), report.infrared_shift_px.x(), report.infrared_shift_px.y());
   }
   html += HtmlFigure(
       SvgMap(report.sigmas, "px"),

@@ -81,12 +81,11 @@ std::string CameraText(const CalibratedCamera& report) {
       report.views, report.features, report.error.rms_px, report.error.mae_px);
   text += Parameters(report) + Certainty(report) + Subsets(report) + OpenCv(report);
   if (report.infrared_shift_px.any()) {
+    const Eigen::Vector2d written = report.WrittenPrincipalPoint();
     text += fmt::format(
         "  of its depth images: cx {:.2f} cy {:.2f}, {:.2f} and {:.2f} px less than of these "
         "infrared ones (--infrared-shift)\n",
-        report.camera.lens[2] - report.infrared_shift_px.x(),
-        report.camera.lens[3] - report.infrared_shift_px.y(), report.infrared_shift_px.x(),
-        report.infrared_shift_px.y());
+        written.x(), written.y(), report.infrared_shift_px.x(), report.infrared_shift_px.y());
   }
   for (const std::string& missing : report.missing) text += fmt::format("  missing: {}\n", missing);
   return text;

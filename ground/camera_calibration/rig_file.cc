@@ -42,8 +42,8 @@ CalibrationRecord CameraRecord(const CalibrationReport& report, const Calibrated
 
 CameraIntrinsics Intrinsics(const CalibratedCamera& report) {
   CameraModel camera = CameraOf(report.camera.kind, report.camera.lens, report.size_px);
-  camera.cx -= report.infrared_shift_px.x();
-  camera.cy -= report.infrared_shift_px.y();
+  camera.cx = report.WrittenPrincipalPoint().x();
+  camera.cy = report.WrittenPrincipalPoint().y();
   return ToProto(camera);
 }
 

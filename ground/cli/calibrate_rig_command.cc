@@ -43,13 +43,7 @@ void AddCalibrateRigCommand(CLI::App& calibrate, CommandBody& body) {
   auto arguments = std::make_shared<TargetArguments>();
   AddTargetArguments(*command, *arguments);
   AddDepthArguments(*command, *arguments);
-  command->get_option("--lens")->description(
-      "Model of the thermal camera's lens: brown-conrady up to some 90 degrees of view, rational "
-      "or "
-      "fisheye for wider ones");
-  command->add_option("--depth-lens", arguments->depth_lens, "The same of the depth camera")
-      ->check(CLI::IsMember({"brown-conrady", "rational", "fisheye"}))
-      ->capture_default_str();
+  AddDepthLens(*command, *arguments);
   command->footer(kCalibrateRigFooter + std::string(TargetHelp()) + kCalibrateRigExamples);
   command->callback(
       [arguments, &body] { body = [arguments] { return RunCalibrateRig(*arguments); }; });

@@ -36,10 +36,12 @@ class PoseKeeper {
     }
   }
 
-  void Take(CalibratedStream stream, const FrameHeader& header, const Image<float>& image) {
+  /// `make_image` is called only if the stream is wanted.
+  void Take(CalibratedStream stream, const FrameHeader& header, const auto& make_image) {
     for (std::size_t i = 0; i < streams_.size(); ++i) {
       if (streams_[i].read.stream != stream) continue;
-      Keep(i, streams_[i].finder.Add(ToSeconds(header.capture_time.time_since_epoch()), image));
+      const double time_s = ToSeconds(header.capture_time.time_since_epoch());
+      Keep(i, streams_[i].finder.Add(time_s, make_image()));
     }
   }
 
@@ -129,11 +131,11 @@ Result<std::vector<ImageSeries>> TakeLiveSeries(const RigAddress& address,
   handlers.thermal = [&](const ReceivedThermal& thermal) {
     if (thermal.frame->valid)
       poses.Take(CalibratedStream::kThermal, thermal.frame->header,
-                 CalibrationImage(thermal.frame->temperature_raw));
+                 [&] { return CalibrationImage(thermal.frame->temperature_raw); });
   };
   handlers.depth = [&](const ReceivedDepth& depth) {
     poses.Take(CalibratedStream::kDepth, depth.frame->header,
-               CalibrationImage(depth.frame->depth_raw, depth.frame->depth_scale));
+               [&] { return CalibrationImage(depth.frame->depth_raw, depth.frame->depth_scale); });
   };
   handlers.rig = [&](const RigDescription& rig) { poses.Take(rig); };
   handlers.turn = [&] {

@@ -44,6 +44,10 @@ Status WriteReport(const CalibrationReport& report, const std::filesystem::path&
   return OkStatus();
 }
 
+void AddLensOption(CLI::App& command, const char* name, std::string& lens, const char* help) {
+  command.add_option(name, lens, help)->check(CLI::IsMember(LensNames()))->capture_default_str();
+}
+
 /// The lens models of cameras, by name.
 std::vector<LensKind> LensesOf(const TargetArguments& arguments,
                                const std::vector<std::string>& camera_names) {
@@ -96,13 +100,11 @@ void AddTargetArguments(CLI::App& command, TargetArguments& arguments) {
   AddRigAddress(command, arguments.address);
   command.add_option("--target", arguments.target, "What the target is, see below")
       ->capture_default_str();
-  command
-      .add_option("--lens", arguments.lens,
-                  "Model of the lens: brown-conrady up to some 90 degrees of view, rational or "
-                  "fisheye for wider ones. If you do not know: the right one leaves the smallest "
-                  "reprojection error by far")
-      ->check(CLI::IsMember(LensNames()))
-      ->capture_default_str();
+  AddLensOption(
+      command, "--lens", arguments.lens,
+      "Model of the lens, in a rig the thermal camera's: brown-conrady up to some 90 "
+      "degrees of view, rational or fisheye for wider ones. If you do not know: the right "
+      "one leaves the smallest reprojection error by far");
   command.add_option("-o,--output", arguments.rig,
                      "Rig file to write, or to update: its other values stay, and as it was it is "
                      "kept as FILE.bak");
@@ -135,6 +137,11 @@ void AddDepthArguments(CLI::App& command, TargetArguments& arguments) {
                   "Units per metre of depth images in a folder")
       ->check(CLI::Range(1.0, 65535.0))
       ->capture_default_str();
+}
+
+void AddDepthLens(CLI::App& command, TargetArguments& arguments) {
+  AddLensOption(command, "--depth-lens", arguments.depth_lens,
+                "Model of the depth camera's lens, as --lens");
 }
 
 CalibratedStream DepthStream(const TargetArguments& arguments) {

@@ -35,6 +35,9 @@ void AddTargetArguments(CLI::App& command, TargetArguments& arguments);
 /// Adds what commands that calibrate a depth camera have, too.
 void AddDepthArguments(CLI::App& command, TargetArguments& arguments);
 
+/// Adds what tells the depth camera's lens from the thermal camera's.
+void AddDepthLens(CLI::App& command, TargetArguments& arguments);
+
 /// Returns what a depth camera is calibrated on.
 CalibratedStream DepthStream(const TargetArguments& arguments);
 
